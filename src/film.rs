@@ -70,9 +70,9 @@ impl Film {
     /// A black film without samples.
     ///
     /// # Errors
-    /// [`Error::Limit`] if it does not fit into the memory that is free now, together with what writing it takes.
+    /// [`Error::Limit`] if it does not fit into memory, as [`Film::check_size`] tells.
     pub fn new(width: u32, height: u32) -> Result<Self> {
-        check_memory(width, height, available_memory())?;
+        Film::check_size(width, height)?;
         let pixels = width as usize * height as usize;
         let mut film = Film { width, height, sum: Vec::new(), samples: Vec::new() };
         let refused = |_| too_large(width, height, "what the system would give".into());
@@ -81,6 +81,14 @@ impl Film {
         film.sum.resize(pixels, [0.0; 3]);
         film.samples.resize(pixels, 0);
         Ok(film)
+    }
+
+    /// Checks that a film of this size, and what writing it takes, fits into the memory that is free now.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] if it does not.
+    pub fn check_size(width: u32, height: u32) -> Result<()> {
+        check_memory(width, height, available_memory())
     }
 
     /// Number of pixels.
