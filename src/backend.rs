@@ -213,3 +213,16 @@ pub fn devices() -> Result<Vec<DeviceReport>> {
         })
         .collect())
 }
+
+/// The device that `auto` takes: of the usable ones a discrete GPU before an integrated, a virtual and a software one; of
+/// equals the first.
+pub fn preferred(devices: &[DeviceReport]) -> Option<&DeviceReport> {
+    let rank = |device: &DeviceReport| match device.kind {
+        "discrete GPU" => 0,
+        "integrated GPU" => 1,
+        "virtual GPU" => 2,
+        "software (CPU)" => 3,
+        _ => 4,
+    };
+    devices.iter().filter(|device| device.backend.is_ok()).min_by_key(|device| rank(device))
+}

@@ -1,5 +1,7 @@
 //! The film: what a tracer measured, added up.
 
+use crate::{Error, Result};
+
 /// A rectangle of pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Tile {
@@ -47,4 +49,176 @@ pub struct PixelSum {
     pub radiance: [f64; 3],
     /// Rays that were traced for it, of all kinds.
     pub rays: u32,
+}
+
+/// Everything measured so far: a sum of radiance and a number of samples for every pixel, rows from the top.
+///
+/// The sums are `f64`: at 1e7 samples they are right to ten digits, where `f32` sums are 9 % off.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Film {
+    /// Width in pixels.
+    pub width: u32,
+    /// Height in pixels.
+    pub height: u32,
+    /// Radiance of each pixel, added up over its samples, in linear RGB.
+    pub sum: Vec<[f64; 3]>,
+    /// Samples of each pixel. They differ between pixels where a render ended in the middle of a pass.
+    pub samples: Vec<u32>,
+}
+
+impl Film {
+    /// A black film without samples.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] if it does not fit into memory, as [`Film::check_size`] tells.
+    pub fn new(width: u32, height: u32) -> Result<Self> {
+        Film::check_size(width, height)?;
+        let pixels = width as usize * height as usize;
+        let mut film = Film { width, height, sum: Vec::new(), samples: Vec::new() };
+        let refused = |_| too_large(width, height, "what the system would give".into());
+        film.sum.try_reserve_exact(pixels).map_err(refused)?;
+        film.samples.try_reserve_exact(pixels).map_err(refused)?;
+        film.sum.resize(pixels, [0.0; 3]);
+        film.samples.resize(pixels, 0);
+        Ok(film)
+    }
+
+    /// Checks that a film of this size, and what writing it takes, fits into the memory that is free now.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] if it does not.
+    pub fn check_size(width: u32, height: u32) -> Result<()> {
+        check_memory(width, height, available_memory())
+    }
+
+    /// Number of pixels.
+    pub fn pixels(&self) -> usize {
+        self.sum.len()
+    }
+
+    /// Adds what a tracer measured for `batch`, in ascending order of the samples.
+    ///
+    /// # Panics
+    /// If there is not one sum for each pixel and group, or the tile leaves the film.
+    pub fn add(&mut self, batch: &Batch, sums: &[PixelSum]) {
+        let tile = batch.tile;
+        assert_eq!(sums.len(), tile.pixels() * batch.groups() as usize, "one sum a pixel and group");
+        assert!(tile.x + tile.width <= self.width && tile.y + tile.height <= self.height, "a tile inside the film");
+        for group in sums.chunks_exact(tile.pixels().max(1)) {
+            for (row, sums) in group.chunks_exact(tile.width as usize).enumerate() {
+                let start = (tile.y as usize + row) * self.width as usize + tile.x as usize;
+                for (total, sum) in self.sum[start..].iter_mut().zip(sums) {
+                    for (t, s) in total.iter_mut().zip(sum.radiance) {
+                        *t += s;
+                    }
+                }
+            }
+        }
+        for row in tile.y..tile.y + tile.height {
+            let start = row as usize * self.width as usize + tile.x as usize;
+            for samples in &mut self.samples[start..start + tile.width as usize] {
+                *samples += batch.samples.end - batch.samples.start;
+            }
+        }
+    }
+
+    /// Mean radiance of a pixel by its index, `y * width + x`, in linear RGB; black if it has no sample.
+    pub fn mean(&self, pixel: usize) -> [f64; 3] {
+        let samples = self.samples[pixel];
+        if samples == 0 { [0.0; 3] } else { self.sum[pixel].map(|s| s / f64::from(samples)) }
+    }
+
+    /// Mean radiance of all pixels: linear RGB, row by row from the top.
+    pub fn to_linear(&self) -> Vec<f32> {
+        (0..self.pixels()).flat_map(|pixel| self.mean(pixel).map(|v| v as f32)).collect()
+    }
+
+    /// The number of samples of the pixel that has the fewest.
+    pub fn least_samples(&self) -> u32 {
+        self.samples.iter().copied().min().unwrap_or(0)
+    }
+
+    /// The number of samples of the pixel that has the most.
+    pub fn most_samples(&self) -> u32 {
+        self.samples.iter().copied().max().unwrap_or(0)
+    }
+}
+
+/// Bytes a pixel: 28 of the film, 12 of its linear picture, 16 for the encoders.
+const BYTES_PER_PIXEL: u64 = 56;
+
+/// Refuses a film that `available` bytes cannot hold.
+fn check_memory(width: u32, height: u32, available: Option<u64>) -> Result<()> {
+    match available {
+        Some(bytes) if u64::from(width) * u64::from(height) * BYTES_PER_PIXEL > bytes => {
+            Err(too_large(width, height, format!("{:.1} GiB, what is free now", bytes as f64 / f64::from(1 << 30))))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn too_large(width: u32, height: u32, limit: String) -> Error {
+    let bytes = u64::from(width) * u64::from(height) * BYTES_PER_PIXEL;
+    Error::Limit {
+        what: format!("a film of {width} x {height} pixels"),
+        needed: format!("{:.1} GiB of memory", bytes as f64 / f64::from(1 << 30)),
+        device: "this machine".into(),
+        limit,
+        advice: "choose a smaller --width and --height".into(),
+    }
+}
+
+/// Bytes that a process may still take without swapping; known on Linux only.
+fn available_memory() -> Option<u64> {
+    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
+    let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
+    line.split_whitespace().next()?.parse::<u64>().ok().map(|kib| kib * 1024)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn grey(v: f64) -> PixelSum {
+        PixelSum { radiance: [v; 3], rays: 1 }
+    }
+
+    #[test]
+    fn sums_do_not_drift() {
+        let mut film = Film::new(1, 1).unwrap();
+        let tile = Tile { x: 0, y: 0, width: 1, height: 1 };
+        let sums = vec![grey(0.1); 1000];
+        let mut single = 0.0f32;
+        for i in 0..10_000 {
+            film.add(&Batch { tile, samples: i * 1000..(i + 1) * 1000, group: 1 }, &sums);
+            (0..1000).for_each(|_| single += 0.1);
+        }
+        assert_eq!(film.samples, [10_000_000]);
+        assert!((film.mean(0)[0] / 0.1 - 1.0).abs() < 1e-9, "{}", film.mean(0)[0]);
+        assert!((single / 1e6 - 1.0).abs() > 0.05, "f32 would do: {single}");
+    }
+
+    #[test]
+    fn a_batch_lands_on_its_tile() {
+        let mut film = Film::new(4, 3).unwrap();
+        let tile = Tile { x: 1, y: 1, width: 2, height: 2 };
+        // Samples 2 to 4 in groups of two: the second group holds one sample.
+        let batch = Batch { tile, samples: 2..5, group: 2 };
+        let sums: Vec<_> = [1.0, 2.0, 3.0, 4.0, 10.0, 20.0, 30.0, 40.0].map(grey).into();
+        film.add(&batch, &sums);
+        let sum: Vec<f64> = film.sum.iter().map(|s| s[0]).collect();
+        assert_eq!(sum, [0.0, 0.0, 0.0, 0.0, 0.0, 11.0, 22.0, 0.0, 0.0, 33.0, 44.0, 0.0]);
+        assert_eq!(film.samples, [0, 0, 0, 0, 0, 3, 3, 0, 0, 3, 3, 0]);
+        assert_eq!(film.mean(6), [22.0 / 3.0; 3]);
+        assert_eq!(film.to_linear()[..3], [0.0; 3]);
+        assert_eq!(film.to_linear()[3 * 5..3 * 6], [11.0 / 3.0; 3]);
+        assert_eq!((film.least_samples(), film.most_samples()), (0, 3));
+    }
+
+    #[test]
+    fn absurd_sizes_are_refused() {
+        let error = check_memory(65536, 65536, Some(8 << 30)).unwrap_err().to_string();
+        assert!(error.contains("65536 x 65536") && error.contains("224.0 GiB") && error.contains("8.0 GiB"), "{error}");
+        assert!(check_memory(1920, 1080, Some(8 << 30)).is_ok());
+    }
 }

@@ -1,1 +1,273 @@
-//! Pictures on disk.
+//! Pictures on disk: PNG to look at, EXR and HDR to compute with.
+//!
+//! Every file is written beside its final place and renamed, so that nobody ever sees half of one.
+
+use crate::film::Film;
+use crate::{Error, Result};
+use image::{ExtendedColorType, ImageEncoder};
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// File formats, by the ending of the name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// 8 bits a channel, sRGB, exposed and clamped.
+    Png,
+    /// OpenEXR: 32-bit floats, linear RGB; the exposure is not applied.
+    Exr,
+    /// Radiance RGBE: 8 bits a channel and a common exponent (about 1 % steps), linear RGB; the exposure is not applied.
+    Hdr,
+}
+
+impl Format {
+    /// The format that a file name's ending stands for, in upper or lower case.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for any other ending.
+    pub fn of(path: &Path) -> Result<Self> {
+        let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+        match ending.as_deref() {
+            Some("png") => Ok(Format::Png),
+            Some("exr") => Ok(Format::Exr),
+            Some("hdr") => Ok(Format::Hdr),
+            Some(other) => Err(Error::Usage(format!(
+                "{}: a picture cannot be written as .{other}: choose .png, .exr or .hdr",
+                path.display()
+            ))),
+            None => Err(Error::Usage(format!(
+                "{}: the name has no ending that says which format to write: add .png, .exr or .hdr",
+                path.display()
+            ))),
+        }
+    }
+}
+
+/// Checks before the work begins that a picture can be written to `path` after it.
+///
+/// # Errors
+/// [`Error::Usage`] for an unknown ending, [`Error::Write`] if the folder is missing or not writable.
+pub fn check_output(path: &Path) -> Result<()> {
+    Format::of(path)?;
+    check_writable(path)
+}
+
+/// Checks that a file can be created at `path` or replaced there.
+///
+/// # Errors
+/// [`Error::Write`] if the folder is missing or not writable, or `path` is itself a folder.
+pub fn check_writable(path: &Path) -> Result<()> {
+    let folder = folder_of(path);
+    if path.is_dir() {
+        return Err(Error::write(path, "it is a folder; give a file name"));
+    }
+    if !folder.is_dir() {
+        return Err(Error::write(path, format!("the folder {} does not exist; create it first", folder.display())));
+    }
+    // Permission bits do not tell about read-only file systems, so one is really created (and removed).
+    create_beside(path).map(drop)
+}
+
+/// Writes a film to `path` in the format of its ending. `exposure` is in stops and changes a PNG only.
+///
+/// # Errors
+/// [`Error::Usage`] for an unknown ending, [`Error::Write`] if the system refuses; then nothing has changed at `path`.
+pub fn save(path: &Path, film: &Film, exposure: f32) -> Result<()> {
+    let format = Format::of(path)?;
+    let linear = film.to_linear();
+    let (width, height) = (film.width, film.height);
+    write_atomically(path, |out| {
+        let floats = bytemuck::cast_slice(&linear);
+        match format {
+            Format::Png => image::codecs::png::PngEncoder::new(out).write_image(
+                &to_srgb8(&linear, exposure),
+                width,
+                height,
+                ExtendedColorType::Rgb8,
+            ),
+            Format::Exr => {
+                // The encoder must seek, which a buffered file cannot do cheaply.
+                let mut bytes = std::io::Cursor::new(Vec::new());
+                image::codecs::openexr::OpenExrEncoder::new(&mut bytes).write_image(
+                    floats,
+                    width,
+                    height,
+                    ExtendedColorType::Rgb32F,
+                )?;
+                Ok(out.write_all(bytes.get_ref())?)
+            }
+            Format::Hdr => {
+                image::codecs::hdr::HdrEncoder::new(out).write_image(floats, width, height, ExtendedColorType::Rgb32F)
+            }
+        }
+    })
+}
+
+/// Writes `text` to `path`.
+///
+/// # Errors
+/// [`Error::Write`] if the system refuses; then nothing has changed at `path`.
+pub fn save_text(path: &Path, text: &str) -> Result<()> {
+    write_atomically(path, |out| out.write_all(text.as_bytes()))
+}
+
+/// The non-linear sRGB value of a linear one in [0, 1] (IEC 61966-2-1).
+pub fn srgb(linear: f32) -> f32 {
+    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+}
+
+/// Linear values, times `2^exposure` and clamped, as 8-bit sRGB.
+pub fn to_srgb8(linear: &[f32], exposure: f32) -> Vec<u8> {
+    let scale = exposure.exp2();
+    // Rust's `as` saturates, and takes NaN (0 times an infinite scale) to 0.
+    linear.iter().map(|v| (255.0 * srgb((v * scale).clamp(0.0, 1.0))).round() as u8).collect()
+}
+
+/// The folder in which `path` lies.
+fn folder_of(path: &Path) -> PathBuf {
+    match path.parent() {
+        Some(parent) if parent.as_os_str().is_empty() => PathBuf::from("."),
+        Some(parent) => parent.to_owned(),
+        None => PathBuf::from("/"),
+    }
+}
+
+/// A new file in the folder of `path`, removed when dropped.
+fn create_beside(path: &Path) -> Result<tempfile::NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".luminaire-").suffix(".tmp");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // What any new file gets, less the umask; a temporary file would be its owner's alone.
+        builder.permissions(std::fs::Permissions::from_mode(0o666));
+    }
+    builder
+        .tempfile_in(folder_of(path))
+        .map_err(|e| Error::write(path, format!("the folder {} cannot be written to ({e})", folder_of(path).display())))
+}
+
+/// Lets `fill` write a temporary file, and moves that to `path` once it is complete on the disk.
+fn write_atomically<E: ToString>(
+    path: &Path,
+    fill: impl FnOnce(&mut dyn Write) -> std::result::Result<(), E>,
+) -> Result<()> {
+    let file = create_beside(path)?;
+    let mut out = BufWriter::new(file);
+    fill(&mut out).map_err(|e| Error::write(path, e))?;
+    let file = out.into_inner().map_err(|e| Error::write(path, e.error()))?;
+    file.as_file().sync_all().map_err(|e| Error::write(path, e))?;
+    file.persist(path).map_err(|e| Error::write(path, e.error))?;
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A film of 9 x 2 pixels with values from 0 to 1e5, two samples each.
+    fn film() -> Film {
+        let mut film = Film::new(9, 2).unwrap();
+        for (pixel, sum) in film.sum.iter_mut().enumerate() {
+            let v = 10f64.powi(pixel as i32 - 12);
+            *sum = [2.0 * v, 4.0 * v, 0.0];
+        }
+        film.samples.fill(2);
+        film
+    }
+
+    fn read(path: &Path) -> Vec<f32> {
+        image::open(path).unwrap().into_rgb32f().into_raw()
+    }
+
+    #[test]
+    fn exr_keeps_every_bit() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.EXR");
+        save(&path, &film(), 3.0).unwrap();
+        assert_eq!(read(&path), film().to_linear());
+    }
+
+    #[test]
+    fn hdr_keeps_eight_bits() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.hdr");
+        save(&path, &film(), 3.0).unwrap();
+        let (got, expected) = (read(&path), film().to_linear());
+        assert_eq!(got.len(), expected.len());
+        for (pixel, (got, expected)) in got.chunks(3).zip(expected.chunks(3)).enumerate() {
+            let largest = expected.iter().copied().fold(0.0, f32::max);
+            for (g, e) in got.iter().zip(expected) {
+                assert!((g - e).abs() <= largest / 128.0, "pixel {pixel}: {g} for {e}");
+            }
+        }
+    }
+
+    #[test]
+    fn png_is_exposed_srgb() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        let mut film = Film::new(3, 1).unwrap();
+        film.sum = vec![[0.0, 0.001, 0.05], [0.107, 0.25, 0.5], [1.0, 7.0, -1.0]];
+        film.samples.fill(1);
+        save(&path, &film, 1.0).unwrap();
+        // Twice the values; the expected ones are the standard's formula worked out by hand.
+        assert_eq!(image::open(&path).unwrap().into_rgb8().into_raw(), [0, 7, 89, 127, 188, 255, 255, 255, 0]);
+        assert_eq!(to_srgb8(&[0.0, f32::INFINITY, f32::NAN], 0.0), [0, 255, 0]);
+    }
+
+    #[test]
+    fn srgb_transfer_is_continuous_and_inverse_of_the_standard() {
+        for code in 0..=255u8 {
+            let v = f64::from(code) / 255.0;
+            let linear = if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) };
+            assert_eq!(to_srgb8(&[linear as f32], 0.0), [code]);
+        }
+        assert!((srgb(0.003_130_8) - srgb(0.003_130_9)).abs() < 1e-5);
+    }
+
+    #[test]
+    fn unknown_endings_and_missing_folders() {
+        for name in ["a.jpg", "a", "png", "a.png.txt"] {
+            let error = check_output(Path::new(name)).unwrap_err();
+            assert_eq!(error.exit_code(), 2, "{name}");
+            assert!(error.to_string().contains(".exr"), "{error}");
+        }
+        let folder = tempfile::tempdir().unwrap();
+        let error = check_output(&folder.path().join("none/a.png")).unwrap_err();
+        assert_eq!(error.exit_code(), 1);
+        assert!(error.to_string().contains("does not exist"), "{error}");
+        std::fs::create_dir(folder.path().join("b.png")).unwrap();
+        assert!(check_output(&folder.path().join("b.png")).unwrap_err().to_string().contains("is a folder"));
+        check_output(&folder.path().join("c.png")).unwrap();
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "the check leaves nothing");
+        check_output(Path::new("in-the-current-folder.png")).unwrap();
+    }
+
+    #[test]
+    fn a_failed_write_leaves_what_was_there() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.json");
+        save_text(&path, "old").unwrap();
+        let failed = write_atomically(&path, |out| {
+            out.write_all(b"half").unwrap();
+            Err("the disk is full")
+        });
+        assert!(failed.unwrap_err().to_string().contains("the disk is full"));
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "old");
+        save_text(&path, "new").unwrap();
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "new");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn files_get_ordinary_permissions() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let (ours, plain) = (folder.path().join("a.json"), folder.path().join("b"));
+        save_text(&ours, "x").unwrap();
+        std::fs::write(&plain, "x").unwrap();
+        let mode = |p: &Path| p.metadata().unwrap().permissions().mode();
+        assert_eq!(mode(&ours), mode(&plain));
+    }
+}

@@ -1,1 +1,19 @@
-fn main() {}
+//! The command line: arguments, one library call, exit code and message.
+
+mod cli;
+
+use clap::Parser;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let args = cli::Args::parse();
+    let done = match &args.command {
+        cli::Command::Render(options) => cli::render::run(options),
+        cli::Command::Devices => cli::devices::run(),
+        cli::Command::Inspect(options) => cli::inspect::run(&options.scene),
+    };
+    done.unwrap_or_else(|error| {
+        cli::tell(&format!("error: {error}"));
+        ExitCode::from(error.exit_code())
+    })
+}

@@ -1,7 +1,16 @@
 //! The progressive loop: batches, limits (samples, time), progress, cancellation.
+//!
+//! Samples are summed in groups whose bounds depend on the sample's index alone: 0, 1, 2, 4, 8, 16, then every 16. A batch
+//! is one tile and some whole groups, as many as a device does in the time it asks for. How the work was cut into batches
+//! therefore never shows in the picture: the same groups are added in the same order, to the last bit.
 
-use crate::Result;
-use crate::film::{Batch, PixelSum};
+mod schedule;
+
+use crate::film::{Batch, Film, PixelSum};
+use crate::{Error, Result};
+use schedule::{FIRST_BUDGET, Schedule, next_budget};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
 
 /// What a tracer gives back for a [`Batch`].
 #[derive(Debug, Clone, Default)]
@@ -27,4 +36,302 @@ pub trait Tracer {
 
     /// How many seconds one batch should take: short on a GPU that also draws a desktop.
     fn batch_seconds(&self) -> f64;
+}
+
+/// When to end. Whichever limit is met first counts; without any, only `stop` ends a render.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Limits {
+    /// Samples a pixel.
+    pub spp: Option<u32>,
+    /// Seconds of wall-clock time, met at the next end of a batch.
+    pub seconds: Option<f64>,
+}
+
+/// How far a render is, told after each batch.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Progress {
+    /// Samples so far, over all pixels.
+    pub samples: u64,
+    /// Pixels of the film.
+    pub pixels: u64,
+    /// Rays so far, of all kinds.
+    pub rays: u64,
+    /// Wall-clock seconds so far.
+    pub seconds: f64,
+    /// The limits.
+    pub limits: Limits,
+}
+
+impl Progress {
+    /// Samples a pixel so far, averaged over the pixels.
+    pub fn spp(&self) -> f64 {
+        self.samples as f64 / self.pixels as f64
+    }
+
+    /// Millions of rays a second; 0 before any time has passed.
+    pub fn mrays_per_second(&self) -> f64 {
+        if self.seconds > 0.0 { self.rays as f64 / self.seconds * 1e-6 } else { 0.0 }
+    }
+
+    /// The part that is done, 0 to 1, by the limit that will be met first; 0 without limits.
+    pub fn fraction(&self) -> f64 {
+        let by_samples = self.limits.spp.map_or(0.0, |spp| self.spp() / f64::from(spp));
+        let by_time = self.limits.seconds.map_or(0.0, |seconds| self.seconds / seconds);
+        by_samples.max(by_time).min(1.0)
+    }
+
+    /// Seconds left at the present pace, if there is a limit and any work was done.
+    pub fn seconds_left(&self) -> Option<f64> {
+        let fraction = self.fraction();
+        (fraction > 0.0).then(|| self.seconds * (1.0 - fraction) / fraction)
+    }
+}
+
+/// Why a render ended.
+#[derive(Debug)]
+pub enum End {
+    /// Every pixel has the samples it was to get.
+    Samples,
+    /// The time was up.
+    Time,
+    /// `stop` was set.
+    Stopped,
+    /// The tracer failed; what it had done before is on the film.
+    Failed(Error),
+}
+
+/// What a render did.
+#[derive(Debug)]
+pub struct Rendered {
+    /// The sums.
+    pub film: Film,
+    /// Samples, rays and seconds at the end.
+    pub progress: Progress,
+    /// Samples that were not finite and count as black.
+    pub non_finite: u64,
+    /// Seconds that the device was busy by its own clock; 0 if it has none.
+    pub device_seconds: f64,
+    /// Why it ended.
+    pub end: End,
+}
+
+/// Renders `width` by `height` pixels until a limit is met or `stop` is set, calling `progress` after each batch.
+///
+/// # Errors
+/// If the film does not fit into memory. A failure of the tracer is an [`End`], so that what was done is not lost.
+pub fn render(
+    tracer: &mut dyn Tracer,
+    (width, height): (u32, u32),
+    limits: Limits,
+    progress: &mut dyn FnMut(&Progress),
+    stop: &AtomicBool,
+) -> Result<Rendered> {
+    let pixels = u64::from(width) * u64::from(height);
+    let mut rendered = Rendered {
+        film: Film::new(width, height)?,
+        progress: Progress { pixels, limits, ..Progress::default() },
+        non_finite: 0,
+        device_seconds: 0.0,
+        end: End::Samples,
+    };
+    let max_sums = tracer.max_sums();
+    let mut schedule = Schedule::new((width, height), limits.spp.unwrap_or(u32::MAX));
+    let mut budget = FIRST_BUDGET;
+    let start = Instant::now();
+    while let Some(batch) = schedule.next(budget, max_sums) {
+        if stop.load(Ordering::Relaxed) {
+            rendered.end = End::Stopped;
+            break;
+        }
+        if limits.seconds.is_some_and(|limit| start.elapsed().as_secs_f64() >= limit) {
+            rendered.end = End::Time;
+            break;
+        }
+        let batch_start = Instant::now();
+        let traced = match tracer.trace(&batch) {
+            Ok(traced) => traced,
+            Err(error) => {
+                rendered.end = End::Failed(error);
+                break;
+            }
+        };
+        let seconds = traced.device_seconds.unwrap_or_else(|| batch_start.elapsed().as_secs_f64());
+        let samples = batch.tile.pixels() as u64 * u64::from(batch.samples.end - batch.samples.start);
+        budget = next_budget(budget, samples, seconds, tracer.batch_seconds());
+        rendered.film.add(&batch, &traced.sums);
+        rendered.non_finite += u64::from(traced.non_finite);
+        rendered.device_seconds += traced.device_seconds.unwrap_or(0.0);
+        rendered.progress.samples += samples;
+        rendered.progress.rays += traced.sums.iter().map(|s| u64::from(s.rays)).sum::<u64>();
+        rendered.progress.seconds = start.elapsed().as_secs_f64();
+        progress(&rendered.progress);
+    }
+    rendered.progress.seconds = start.elapsed().as_secs_f64();
+    Ok(rendered)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::schedule::group_length;
+    use super::*;
+    use crate::sampling::{random4, uniform};
+
+    /// Radiance of random numbers that differ widely in size, so that any other order of addition shows.
+    struct Fake {
+        width: u32,
+        max_sums: usize,
+        batch_seconds: f64,
+        /// Pretended seconds a sample.
+        sample_seconds: f64,
+        batches: Vec<Batch>,
+        fail_at: Option<usize>,
+    }
+
+    impl Fake {
+        fn new(width: u32, max_sums: usize, batch_seconds: f64) -> Self {
+            Fake { width, max_sums, batch_seconds, sample_seconds: 1e-6, batches: Vec::new(), fail_at: None }
+        }
+    }
+
+    impl Tracer for Fake {
+        fn trace(&mut self, batch: &Batch) -> Result<Traced> {
+            if self.fail_at == Some(self.batches.len()) {
+                return Err(Error::NoDevice("the device is lost".into()));
+            }
+            self.batches.push(batch.clone());
+            let tile = batch.tile;
+            let mut sums = Vec::new();
+            for start in batch.samples.clone().step_by(batch.group as usize) {
+                for y in tile.y..tile.y + tile.height {
+                    for x in tile.x..tile.x + tile.width {
+                        let mut sum = PixelSum::default();
+                        for sample in start..(start + batch.group).min(batch.samples.end) {
+                            let [r, g, b, e] = random4(y * self.width + x, sample, 0, 1);
+                            let scale = 10f64.powi((e % 16) as i32 - 8);
+                            for (s, v) in sum.radiance.iter_mut().zip([r, g, b]) {
+                                *s += uniform(v) * scale;
+                            }
+                            sum.rays += 2;
+                        }
+                        sums.push(sum);
+                    }
+                }
+            }
+            let samples = tile.pixels() as u32 * (batch.samples.end - batch.samples.start);
+            Ok(Traced { sums, non_finite: 1, device_seconds: Some(f64::from(samples) * self.sample_seconds) })
+        }
+
+        fn max_sums(&self) -> usize {
+            self.max_sums
+        }
+
+        fn batch_seconds(&self) -> f64 {
+            self.batch_seconds
+        }
+    }
+
+    fn run(fake: &mut Fake, size: (u32, u32), spp: u32) -> Rendered {
+        let limits = Limits { spp: Some(spp), seconds: None };
+        render(fake, size, limits, &mut |_| {}, &AtomicBool::new(false)).unwrap()
+    }
+
+    #[test]
+    fn batch_sizes_never_show() {
+        let size = (37, 23);
+        let mut films = Vec::new();
+        // From one pixel at a time to everything at once; 71 samples end in the middle of a group.
+        for (max_sums, seconds) in
+            [(1, 1.0), (5, 1e-5), (64, 1.0), (10_000_000, 1e-4), (10_000_000, 3e-3), (10_000_000, 1e9)]
+        {
+            let mut fake = Fake::new(size.0, max_sums, seconds);
+            let rendered = run(&mut fake, size, 71);
+            assert!(matches!(rendered.end, End::Samples));
+            assert!(rendered.film.samples.iter().all(|s| *s == 71));
+            assert_eq!(rendered.progress.rays, 37 * 23 * 71 * 2);
+            assert_eq!(rendered.non_finite, fake.batches.len() as u64);
+            films.push(rendered.film);
+        }
+        assert!(films.iter().all(|film| *film == films[0]));
+    }
+
+    #[test]
+    fn every_pixel_once_per_group_within_the_limits() {
+        for (size, max_sums, seconds) in
+            [((37, 23), 100, 1e-3), ((5000, 3), 1 << 20, 1e-3), ((1, 1), 1, 1.0), ((8, 600), 1 << 20, 1e-2)]
+        {
+            let mut fake = Fake::new(size.0, max_sums, seconds);
+            run(&mut fake, size, 100);
+            let mut next = vec![0u32; size.0 as usize * size.1 as usize];
+            for batch in &fake.batches {
+                assert!(batch.tile.pixels() * batch.groups() as usize <= max_sums);
+                assert_eq!(batch.group, group_length(batch.samples.start));
+                for y in batch.tile.y..batch.tile.y + batch.tile.height {
+                    for x in batch.tile.x..batch.tile.x + batch.tile.width {
+                        let next = &mut next[(y * size.0 + x) as usize];
+                        assert_eq!(*next, batch.samples.start);
+                        *next = batch.samples.end;
+                    }
+                }
+            }
+            assert!(next.iter().all(|n| *n == 100));
+        }
+    }
+
+    #[test]
+    fn batches_grow_slowly_and_shrink_at_once() {
+        let mut fake = Fake::new(512, 1 << 30, 0.1);
+        run(&mut fake, (512, 512), 64);
+        let samples: Vec<usize> = fake.batches.iter().map(|b| b.tile.pixels() * b.samples.len()).collect();
+        assert_eq!(samples[..3], [8 * 512, 32 * 512, 118 * 512]);
+        assert!(samples.iter().all(|s| *s <= 100_000), "{samples:?}");
+        // A device that turns out slow: 0.01 s a sample against a target of 0.1 s.
+        assert_eq!(next_budget(4096, 4096, 40.96, 0.1), 10);
+        assert_eq!(next_budget(10, 10, 0.1, 0.1), 10);
+        assert_eq!(next_budget(1000, 100, 0.01, 0.1), 1000);
+        assert_eq!(next_budget(1, 1, 100.0, 0.1), 1);
+    }
+
+    #[test]
+    fn time_ends_at_a_batch() {
+        let mut fake = Fake::new(64, 1 << 20, 0.001);
+        let limits = Limits { spp: None, seconds: Some(0.05) };
+        let mut calls = 0;
+        let rendered = render(&mut fake, (64, 64), limits, &mut |_| calls += 1, &AtomicBool::new(false)).unwrap();
+        assert!(matches!(rendered.end, End::Time));
+        assert!(rendered.progress.seconds >= 0.05 && rendered.progress.seconds < 5.0);
+        assert_eq!(calls, fake.batches.len());
+        assert_eq!(rendered.progress.samples, rendered.film.samples.iter().map(|s| u64::from(*s)).sum::<u64>());
+    }
+
+    #[test]
+    fn stop_keeps_what_was_done() {
+        let mut fake = Fake::new(64, 4096, 1e-3);
+        let stop = AtomicBool::new(false);
+        let limits = Limits { spp: Some(1000), seconds: None };
+        let mut until_three = |p: &Progress| stop.store(p.samples >= 3 * 4096, Ordering::Relaxed);
+        let rendered = render(&mut fake, (64, 64), limits, &mut until_three, &stop).unwrap();
+        assert!(matches!(rendered.end, End::Stopped));
+        assert!(rendered.progress.samples >= 3 * 4096 && rendered.progress.samples < 1000 * 4096);
+        assert!(rendered.film.least_samples() >= 1);
+    }
+
+    #[test]
+    fn a_failure_keeps_what_was_done() {
+        let mut fake = Fake { fail_at: Some(1), ..Fake::new(64, 2048, 1.0) };
+        let rendered = run(&mut fake, (64, 64), 4);
+        assert!(matches!(rendered.end, End::Failed(Error::NoDevice(_))));
+        assert_eq!((rendered.film.least_samples(), rendered.film.most_samples()), (0, 1));
+    }
+
+    #[test]
+    fn progress_by_the_nearer_limit() {
+        let limits = Limits { spp: Some(10), seconds: Some(100.0) };
+        let progress = Progress { samples: 500, pixels: 100, rays: 4_000_000, seconds: 2.0, limits };
+        assert_eq!(progress.fraction(), 0.5);
+        assert_eq!(progress.seconds_left(), Some(2.0));
+        assert_eq!(progress.mrays_per_second(), 2.0);
+        assert_eq!(Progress { limits: Limits::default(), ..progress }.seconds_left(), None);
+        let nearly_over = Progress { seconds: 90.0, ..progress };
+        assert_eq!(nearly_over.fraction(), 0.9);
+    }
 }

@@ -1,0 +1,230 @@
+//! Arguments and the manner of speaking: results on stdout, everything else on stderr.
+
+pub mod devices;
+pub mod inspect;
+mod progress;
+pub mod render;
+mod stats;
+
+use luminaire::backend::Backend;
+use std::io::Write;
+use std::path::PathBuf;
+
+/// Exit codes, as `--help` tells them.
+const EXIT_CODES: &str = "\
+Exit codes:
+  0    done
+  1    failure: a file, a scene, a device; `error:` on stderr says what and what to do
+  2    wrong usage: an option, or options that do not go together
+  130  interrupted (Ctrl-C or SIGTERM); what had been rendered until then is written";
+
+const EXAMPLES: &str = "\
+Examples:
+  luminaire render scenes/cornell/cornell.toml
+  luminaire render model.obj -o model.png -o model.exr --spp 256
+  luminaire inspect model.obj
+  luminaire devices
+
+";
+
+const RENDER_EXAMPLES: &str = "\
+Examples:
+  luminaire render scenes/cornell/cornell.toml
+      cornell.png in the current folder, with what the scene file says
+  luminaire render model.obj -o out/model.png -o out/model.exr --width 1920 --spp 256
+      two files of one render; the height follows from the scene's aspect ratio
+  luminaire render model.obj --time 30 --backend compute-bvh --stats run.json
+      as many samples as 30 seconds allow, and the figures of the run
+
+";
+
+/// A path tracer on Vulkan: ray queries or a compute-shader BVH, with a double-precision reference.
+#[derive(Debug, clap::Parser)]
+#[command(version, about, after_help = format!("{EXAMPLES}{EXIT_CODES}"), subcommand_required = true)]
+pub struct Args {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Debug, clap::Subcommand)]
+pub enum Command {
+    /// Render a scene to PNG, EXR or HDR files.
+    Render(RenderOptions),
+    /// List every Vulkan device, what it offers, and which backend it would run and why.
+    #[command(after_help = "Exit code 0 if at least one device is usable, 1 if none is.")]
+    Devices,
+    /// Show what was loaded from a scene, and every warning.
+    Inspect(InspectOptions),
+}
+
+/// What to inspect.
+#[derive(Debug, clap::Args)]
+pub struct InspectOptions {
+    /// A scene file (.toml) or any OBJ file.
+    pub scene: PathBuf,
+}
+
+/// What to render, and how.
+#[derive(Debug, clap::Args)]
+#[command(after_help = format!("{RENDER_EXAMPLES}{EXIT_CODES}"))]
+pub struct RenderOptions {
+    /// A scene file (.toml) or any OBJ file.
+    pub scene: PathBuf,
+
+    /// A file to write; .png, .exr or .hdr says the format. May be given several times [default: <SCENE>.png here].
+    #[arg(short, long, value_name = "FILE", help_heading = "Output")]
+    pub output: Vec<PathBuf>,
+    /// Exposure of a PNG in stops: radiance times 2^STOPS [default: the scene's].
+    #[arg(long, value_name = "STOPS", allow_negative_numbers = true, value_parser = stops, help_heading = "Output")]
+    pub exposure: Option<f32>,
+    /// Write the figures of the run to a JSON file.
+    #[arg(long, value_name = "FILE.json", help_heading = "Output")]
+    pub stats: Option<PathBuf>,
+    /// Say nothing but errors.
+    #[arg(long, help_heading = "Output")]
+    pub quiet: bool,
+
+    /// Samples a pixel [default: the scene's, unless there is --time].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), help_heading = "Quality")]
+    pub spp: Option<u32>,
+    /// Stop rendering after so many seconds; with --spp, whichever comes first.
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, help_heading = "Quality")]
+    pub time: Option<f64>,
+    /// Width in pixels [default: the scene's, or from --height at the scene's aspect ratio].
+    #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(1..=65536), help_heading = "Quality")]
+    pub width: Option<u32>,
+    /// Height in pixels [default: the scene's, or from --width at the scene's aspect ratio].
+    #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(1..=65536), help_heading = "Quality")]
+    pub height: Option<u32>,
+    /// Seed of the random numbers: the same seed gives the same picture [default: the scene's].
+    #[arg(long, value_name = "N", help_heading = "Quality")]
+    pub seed: Option<u32>,
+    /// The estimator: full light transport, or direct light and an ambient term [default: the scene's].
+    #[arg(long, value_name = "NAME", help_heading = "Quality")]
+    pub integrator: Option<IntegratorName>,
+    /// At most so many indirect bounces; 0 is direct light alone [default: the scene's].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=1_000_000), help_heading = "Quality")]
+    pub max_bounces: Option<u32>,
+
+    /// What traces the rays.
+    #[arg(long, value_name = "NAME", default_value = "auto", help_heading = "Device")]
+    pub backend: BackendName,
+    /// A Vulkan device: its index in `luminaire devices`, or a part of its name [default: the best].
+    #[arg(long, value_name = "INDEX|NAME", help_heading = "Device")]
+    pub device: Option<String>,
+}
+
+/// `--backend`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum BackendName {
+    /// The fastest on the best device; the CPU where there is no Vulkan.
+    Auto,
+    /// Vulkan ray queries over acceleration structures.
+    RayQuery,
+    /// A compute shader's own traversal of a BVH.
+    ComputeBvh,
+    /// The double-precision reference.
+    Cpu,
+}
+
+impl BackendName {
+    /// The backend that is asked for; none: `auto`.
+    fn backend(self) -> Option<Backend> {
+        match self {
+            BackendName::Auto => None,
+            BackendName::RayQuery => Some(Backend::RayQuery),
+            BackendName::ComputeBvh => Some(Backend::ComputeBvh),
+            BackendName::Cpu => Some(Backend::Cpu),
+        }
+    }
+}
+
+/// `--integrator`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum IntegratorName {
+    /// Emission, direct light and indirect light.
+    Path,
+    /// Emission, direct light and the ambient term.
+    Simple,
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(seconds) if seconds > 0.0 && seconds.is_finite() => Ok(seconds),
+        _ => Err("expected a number of seconds above 0, for example 30 or 0.5".into()),
+    }
+}
+
+fn stops(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(stops) if stops.abs() <= 100.0 => Ok(stops),
+        _ => Err("expected a number of stops from -100 to 100, for example 1.5".into()),
+    }
+}
+
+/// Says a line on stderr. A stderr that nobody reads is no reason to fail.
+pub fn tell(line: &str) {
+    let _ = writeln!(std::io::stderr(), "{line}");
+}
+
+/// Prints a result on stdout. A reader that closes the pipe early (`| head`) is content with less.
+fn print(text: &str) {
+    let mut out = std::io::stdout().lock();
+    let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+}
+
+/// Rows with their columns aligned, each line indented by `indent` spaces.
+fn table(indent: usize, rows: &[Vec<String>]) -> String {
+    let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
+    let width = |c: usize| rows.iter().filter_map(|r| r.get(c)).map(|cell| cell.chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..columns).map(width).collect();
+    let line = |row: &Vec<String>| {
+        let cells = row.iter().zip(&widths).map(|(cell, width)| format!("{cell:width$}"));
+        format!("{:indent$}{}", "", cells.collect::<Vec<_>>().join("  ")).trim_end().to_owned() + "\n"
+    };
+    rows.iter().map(line).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::{CommandFactory, Parser};
+
+    #[test]
+    fn the_definition_is_sound() {
+        Args::command().debug_assert();
+    }
+
+    #[test]
+    fn numbers_are_checked() {
+        let render = |options: &[&str]| {
+            Args::try_parse_from(["luminaire", "render", "a.obj"].iter().chain(options)).map_err(|e| e.exit_code())
+        };
+        for bad in [
+            ["--spp", "0"],
+            ["--spp", "-1"],
+            ["--spp", "4294967296"],
+            ["--time", "0"],
+            ["--time", "nan"],
+            ["--time", "inf"],
+            ["--width", "0"],
+            ["--height", "65537"],
+            ["--seed", "-1"],
+            ["--exposure", "nan"],
+            ["--integrator", "photon"],
+            ["--backend", "gpu"],
+            ["--max-bounces", "1000001"],
+        ] {
+            assert_eq!(render(&bad).unwrap_err(), 2, "{bad:?}");
+        }
+        for good in [["--spp", "4294967295"], ["--time", "0.5"], ["--exposure", "-2"], ["--max-bounces", "0"]] {
+            assert!(render(&good).is_ok(), "{good:?}");
+        }
+    }
+
+    #[test]
+    fn columns_are_aligned() {
+        let rows = vec![vec!["a".into(), "b".into()], vec!["long".into(), "c".into()]];
+        assert_eq!(table(2, &rows), "  a     b\n  long  c\n");
+    }
+}

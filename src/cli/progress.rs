@@ -1,0 +1,95 @@
+//! How far a render is: a bar on a terminal, plain lines elsewhere.
+
+use super::tell;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use luminaire::render::Progress;
+use std::io::IsTerminal;
+
+/// Steps of the bar.
+const STEPS: u64 = 1000;
+
+/// Seconds between two plain lines.
+const LINE_SECONDS: f64 = 10.0;
+
+/// Tells about progress on stderr.
+pub enum Reporter {
+    /// Nothing.
+    Quiet,
+    /// A bar.
+    Bar(ProgressBar),
+    /// Plain lines; the next one is due at this many seconds.
+    Lines(f64),
+}
+
+impl Reporter {
+    /// What fits stderr.
+    pub fn new(quiet: bool) -> Self {
+        if quiet {
+            return Reporter::Quiet;
+        }
+        if !std::io::stderr().is_terminal() {
+            return Reporter::Lines(LINE_SECONDS);
+        }
+        let style = ProgressStyle::with_template("{bar:32} {percent:>3}%  {msg}").expect("a valid template");
+        let bar = ProgressBar::with_draw_target(Some(STEPS), ProgressDrawTarget::stderr());
+        Reporter::Bar(bar.with_style(style))
+    }
+
+    /// Takes note of `progress`.
+    pub fn update(&mut self, progress: &Progress) {
+        match self {
+            Reporter::Quiet => {}
+            Reporter::Bar(bar) => {
+                bar.set_message(describe(progress));
+                bar.set_position((progress.fraction() * STEPS as f64) as u64);
+            }
+            Reporter::Lines(due) => {
+                if progress.seconds >= *due {
+                    *due = progress.seconds + LINE_SECONDS;
+                    tell(&format!("{:>3.0}%  {}", progress.fraction() * 100.0, describe(progress)));
+                }
+            }
+        }
+    }
+
+    /// Removes the bar.
+    pub fn finish(&mut self) {
+        if let Reporter::Bar(bar) = self {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+/// Samples, speed and the time left.
+fn describe(progress: &Progress) -> String {
+    let of = progress.limits.spp.map_or(String::new(), |spp| format!(" of {spp}"));
+    let left = progress.seconds_left().map_or(String::new(), |seconds| format!(", {} left", duration(seconds)));
+    format!("{:.1}{of} samples a pixel, {:.2} Mrays/s{left}", progress.spp(), progress.mrays_per_second())
+}
+
+/// Seconds in words: `0.42 s`, `42 s`, `3 min 5 s`, `2 h 10 min`.
+pub fn duration(seconds: f64) -> String {
+    if seconds < 9.95 {
+        return format!("{seconds:.2} s");
+    }
+    let whole = seconds.round() as u64;
+    match whole {
+        0..60 => format!("{whole} s"),
+        60..3600 => format!("{} min {} s", whole / 60, whole % 60),
+        _ => format!("{} h {} min", whole / 3600, whole / 60 % 60),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use luminaire::render::Limits;
+
+    #[test]
+    fn words() {
+        assert_eq!([0.42, 42.4, 185.0, 7800.0].map(duration), ["0.42 s", "42 s", "3 min 5 s", "2 h 10 min"]);
+        let limits = Limits { spp: Some(64), seconds: None };
+        let progress = Progress { samples: 1600, pixels: 100, rays: 6_000_000, seconds: 2.0, limits };
+        assert_eq!(describe(&progress), "16.0 of 64 samples a pixel, 3.00 Mrays/s, 6.00 s left");
+    }
+}

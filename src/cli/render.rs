@@ -1,0 +1,279 @@
+//! `luminaire render`.
+
+use super::progress::{Reporter, duration};
+use super::stats::{Seconds, Stats};
+use super::{IntegratorName, RenderOptions, print, tell};
+use luminaire::backend::{self, Backend, Opened, Request};
+use luminaire::film::Film;
+use luminaire::render::{End, Limits, Rendered, render};
+use luminaire::scene::{self, FilmSettings, Integrator, Scene};
+use luminaire::{Error, Result, image_io};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+/// Set by the first Ctrl-C.
+static STOP: AtomicBool = AtomicBool::new(false);
+
+/// True while there may be something to write after a Ctrl-C.
+static RENDERING: AtomicBool = AtomicBool::new(false);
+
+/// The exit code of an interrupted run: 128 + SIGINT, as shells have it.
+const INTERRUPTED: u8 = 130;
+
+/// Loads, renders and writes. Everything that can be checked beforehand is.
+pub fn run(options: &RenderOptions) -> Result<ExitCode> {
+    let say = |line: &str| {
+        if !options.quiet {
+            tell(line);
+        }
+    };
+    check_combinations(options)?;
+    let outputs = outputs(options)?;
+    listen_for_interrupts(options.quiet)?;
+
+    let mut seconds = Seconds::default();
+    let start = Instant::now();
+    let mut scene = scene::load(&options.scene)?;
+    seconds.load = start.elapsed().as_secs_f64();
+    scene.warnings.extend(apply(options, &mut scene.film, &mut scene.integrator)?);
+    scene.settings.seed = options.seed.unwrap_or(scene.settings.seed);
+    scene.settings.exposure = options.exposure.unwrap_or(scene.settings.exposure);
+    Film::check_size(scene.film.width, scene.film.height)?;
+    scene.warnings.iter().for_each(|warning| say(&format!("warning: {warning}")));
+
+    let start = Instant::now();
+    let request = Request { backend: options.backend.backend(), device: options.device.clone() };
+    let mut opened = backend::open(&scene, &request)?;
+    seconds.open = start.elapsed().as_secs_f64();
+    seconds.build = opened.build_seconds;
+    let notice = if opened.notice { "notice: " } else { "" };
+    say(&format!("{notice}{} on {}: {}", opened.backend, opened.device, opened.why));
+
+    let scene_spp = options.time.is_none().then_some(scene.settings.spp);
+    let limits = Limits { spp: options.spp.or(scene_spp), seconds: options.time };
+    let mut reporter = Reporter::new(options.quiet);
+    RENDERING.store(true, Ordering::SeqCst);
+    let size = (scene.film.width, scene.film.height);
+    let rendered = render(opened.tracer.as_mut(), size, limits, &mut |p| reporter.update(p), &STOP)?;
+    reporter.finish();
+    seconds.render = rendered.progress.seconds;
+    seconds.device = rendered.device_seconds;
+    finish(options, &scene, &opened, rendered, seconds, &outputs, &say)
+}
+
+/// Writes what there is, and tells how it ended.
+fn finish(
+    options: &RenderOptions,
+    scene: &Scene,
+    opened: &Opened,
+    rendered: Rendered,
+    mut seconds: Seconds,
+    outputs: &[PathBuf],
+    say: &dyn Fn(&str),
+) -> Result<ExitCode> {
+    if rendered.non_finite > 0 {
+        say(&format!("warning: {} samples were not finite and count as black", rendered.non_finite));
+    }
+    let written = if rendered.progress.samples > 0 { outputs } else { &[] };
+    let black = rendered.film.samples.iter().filter(|samples| **samples == 0).count();
+    if black > 0 && !written.is_empty() {
+        say(&format!("warning: {black} pixels have no sample and are black: the render ended during the first pass"));
+    }
+    let start = Instant::now();
+    written.iter().try_for_each(|path| image_io::save(path, &rendered.film, scene.settings.exposure))?;
+    seconds.write = start.elapsed().as_secs_f64();
+    if let Some(path) = &options.stats {
+        let stats = Stats::new(scene, opened, &rendered, seconds, written);
+        let text = serde_json::to_string_pretty(&stats).map_err(|e| Error::write(path, e))?;
+        image_io::save_text(path, &(text + "\n"))?;
+    }
+    if !options.quiet {
+        print(&summary(&rendered, seconds, written, options.stats.as_deref()));
+    }
+    match rendered.end {
+        End::Samples | End::Time => Ok(ExitCode::SUCCESS),
+        End::Stopped => {
+            say(if written.is_empty() {
+                "interrupted before the first sample; no picture is written"
+            } else {
+                "interrupted; the picture holds what was done until then"
+            });
+            Ok(ExitCode::from(INTERRUPTED))
+        }
+        End::Failed(error) => {
+            if !written.is_empty() {
+                say("the render failed; the picture holds what was done until then");
+            }
+            Err(error)
+        }
+    }
+}
+
+/// Where the files are, how long it took, and how fast it was.
+fn summary(rendered: &Rendered, seconds: Seconds, written: &[PathBuf], stats: Option<&Path>) -> String {
+    let film = &rendered.film;
+    let (least, most) = (film.least_samples(), film.most_samples());
+    let spp = if least == most { least.to_string() } else { format!("{least} to {most}") };
+    let mut text = String::new();
+    for path in written {
+        text += &format!("{}: {} x {} pixels, {spp} samples a pixel\n", path.display(), film.width, film.height);
+    }
+    if let Some(path) = stats {
+        text += &format!("{}: the figures of this run\n", path.display());
+    }
+    let progress = &rendered.progress;
+    text += &format!(
+        "load {}, build {}, render {}; {:.2} Mrays/s, {:.3} million samples/s\n",
+        duration(seconds.load),
+        duration(seconds.build),
+        duration(seconds.render),
+        progress.mrays_per_second(),
+        progress.samples as f64 / progress.seconds.max(1e-9) * 1e-6
+    );
+    text
+}
+
+/// Refuses options that mean nothing together.
+fn check_combinations(options: &RenderOptions) -> Result<()> {
+    if options.device.is_some() && options.backend.backend() == Some(Backend::Cpu) {
+        return Err(Error::Usage(
+            "--device chooses a Vulkan device, but --backend cpu uses none: leave one of them out".into(),
+        ));
+    }
+    if options.max_bounces.is_some() && options.integrator == Some(IntegratorName::Simple) {
+        return Err(Error::Usage(
+            "--max-bounces belongs to the path integrator, but --integrator is simple: leave one of them out".into(),
+        ));
+    }
+    Ok(())
+}
+
+/// The pictures to write, all of them possible.
+fn outputs(options: &RenderOptions) -> Result<Vec<PathBuf>> {
+    let mut outputs = options.output.clone();
+    if outputs.is_empty() {
+        let stem = options.scene.file_stem().ok_or_else(|| Error::read(&options.scene, "it is not a file"))?;
+        let mut name = stem.to_owned();
+        name.push(".png");
+        outputs.push(name.into());
+    }
+    for (i, path) in outputs.iter().enumerate() {
+        if outputs[..i].contains(path) {
+            return Err(Error::Usage(format!("-o {} is given twice", path.display())));
+        }
+        image_io::check_output(path)?;
+    }
+    if let Some(path) = &options.stats {
+        if path.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("json")) {
+            return Err(Error::Usage(format!("--stats {}: the name must end in .json", path.display())));
+        }
+        image_io::check_writable(path)?;
+    }
+    Ok(outputs)
+}
+
+/// Puts the options in the place of what the scene says; gives what deserves a warning.
+fn apply(options: &RenderOptions, film: &mut FilmSettings, integrator: &mut Integrator) -> Result<Option<String>> {
+    let FilmSettings { width, height, .. } = *film;
+    let scaled = |given: u32, this: u32, other: u32| {
+        (f64::from(given) * f64::from(this) / f64::from(other)).round().clamp(1.0, 65536.0) as u32
+    };
+    (film.width, film.height) = match (options.width, options.height) {
+        (None, None) => (width, height),
+        (Some(w), None) => (w, scaled(w, height, width)),
+        (None, Some(h)) => (scaled(h, width, height), h),
+        (Some(w), Some(h)) => (w, h),
+    };
+    let mut warning = None;
+    match (options.integrator, *integrator) {
+        (Some(IntegratorName::Simple), Integrator::Path { .. }) => {
+            *integrator = Integrator::Simple { ambient: glam::Vec3::ZERO };
+            warning =
+                Some("the scene gives no ambient radiance: the simple integrator shows direct light alone".into());
+        }
+        (Some(IntegratorName::Path), Integrator::Simple { .. }) => *integrator = Integrator::Path { max_bounces: None },
+        _ => {}
+    }
+    if let Some(limit) = options.max_bounces {
+        match integrator {
+            Integrator::Path { max_bounces } => *max_bounces = Some(limit),
+            Integrator::Simple { .. } => {
+                return Err(Error::Usage(
+                    "--max-bounces belongs to the path integrator, but the scene asks for the simple one: \
+                     add --integrator path"
+                        .into(),
+                ));
+            }
+        }
+    }
+    Ok(warning)
+}
+
+/// Ctrl-C and SIGTERM: the first ends the render at the next batch, a second (or one with nothing to write yet) the process.
+fn listen_for_interrupts(quiet: bool) -> Result<()> {
+    ctrlc::set_handler(move || {
+        let at_once = !RENDERING.load(Ordering::SeqCst) || STOP.swap(true, Ordering::SeqCst);
+        if !quiet {
+            tell(if at_once {
+                "interrupted; nothing is written"
+            } else {
+                "interrupted: finishing the batch and writing what there is; once more ends at once"
+            });
+        }
+        if at_once {
+            std::process::exit(INTERRUPTED.into());
+        }
+    })
+    .map_err(|e| Error::Usage(format!("cannot listen for Ctrl-C: {e}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::{Args, Command};
+    use clap::Parser;
+
+    fn options(words: &[&str]) -> RenderOptions {
+        match Args::try_parse_from(["luminaire", "render", "a/b.scene.toml"].iter().chain(words)).unwrap().command {
+            Command::Render(options) => options,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    fn applied(words: &[&str], integrator: Integrator) -> Result<(u32, u32, Integrator, bool)> {
+        let mut film = FilmSettings { width: 300, height: 200, filter: scene::Filter::Box };
+        let mut integrator = integrator;
+        let warning = apply(&options(words), &mut film, &mut integrator)?;
+        Ok((film.width, film.height, integrator, warning.is_some()))
+    }
+
+    #[test]
+    fn one_side_keeps_the_aspect_ratio() {
+        let path = Integrator::Path { max_bounces: None };
+        let size = |words: &[&str]| applied(words, path).map(|(w, h, ..)| (w, h)).unwrap();
+        assert_eq!(size(&[]), (300, 200));
+        assert_eq!(size(&["--width", "150"]), (150, 100));
+        assert_eq!(size(&["--height", "1"]), (2, 1));
+        assert_eq!(size(&["--width", "1"]), (1, 1));
+        assert_eq!(size(&["--width", "7", "--height", "9"]), (7, 9));
+    }
+
+    #[test]
+    fn integrators() {
+        let path = Integrator::Path { max_bounces: Some(3) };
+        let simple = Integrator::Simple { ambient: glam::Vec3::ONE };
+        assert_eq!(applied(&["--max-bounces", "9"], path).unwrap().2, Integrator::Path { max_bounces: Some(9) });
+        assert_eq!(applied(&["--integrator", "path"], path).unwrap().2, path);
+        assert_eq!(applied(&["--integrator", "path"], simple).unwrap().2, Integrator::Path { max_bounces: None });
+        assert_eq!(applied(&["--integrator", "simple"], simple).unwrap().2, simple);
+        assert!(applied(&["--integrator", "simple"], path).unwrap().3, "a warning about the ambient term");
+        assert_eq!(applied(&["--max-bounces", "1"], simple).unwrap_err().exit_code(), 2);
+    }
+
+    #[test]
+    fn the_default_output_is_named_after_the_scene() {
+        assert_eq!(outputs(&options(&[])).unwrap(), [PathBuf::from("b.scene.png")]);
+    }
+}

@@ -1,0 +1,89 @@
+//! The figures of a run, as JSON.
+
+use luminaire::backend::Opened;
+use luminaire::render::{End, Rendered};
+use luminaire::scene::Scene;
+use serde::Serialize;
+
+/// Wall-clock seconds of the phases of a run.
+#[derive(Debug, Clone, Copy, Default, Serialize)]
+pub struct Seconds {
+    /// Reading the scene.
+    pub load: f64,
+    /// Opening the device, with `build`.
+    pub open: f64,
+    /// Building the acceleration structures and uploading.
+    pub build: f64,
+    /// Rendering.
+    pub render: f64,
+    /// Rendering, by the device's own clock; 0 if it has none.
+    pub device: f64,
+    /// Writing the pictures.
+    pub write: f64,
+}
+
+/// What `--stats` writes.
+#[derive(Debug, Serialize)]
+pub struct Stats<'a> {
+    version: &'static str,
+    scene: String,
+    triangles: u64,
+    width: u32,
+    height: u32,
+    /// "samples" or "time": a limit was met; "interrupted"; "failed".
+    end: &'static str,
+    spp_least: u32,
+    spp_most: u32,
+    seed: u32,
+    backend: String,
+    device: &'a str,
+    why: &'a str,
+    seconds: Seconds,
+    samples: u64,
+    rays: u64,
+    mrays_per_second: f64,
+    samples_per_second: f64,
+    non_finite: u64,
+    outputs: Vec<String>,
+    warnings: &'a [String],
+}
+
+impl<'a> Stats<'a> {
+    /// Gathers the figures.
+    pub fn new(
+        scene: &'a Scene,
+        opened: &'a Opened,
+        rendered: &Rendered,
+        seconds: Seconds,
+        outputs: &[std::path::PathBuf],
+    ) -> Self {
+        let progress = &rendered.progress;
+        Stats {
+            version: env!("CARGO_PKG_VERSION"),
+            scene: scene.path.display().to_string(),
+            triangles: scene.triangle_count(),
+            width: rendered.film.width,
+            height: rendered.film.height,
+            end: match rendered.end {
+                End::Samples => "samples",
+                End::Time => "time",
+                End::Stopped => "interrupted",
+                End::Failed(_) => "failed",
+            },
+            spp_least: rendered.film.least_samples(),
+            spp_most: rendered.film.most_samples(),
+            seed: scene.settings.seed,
+            backend: opened.backend.to_string(),
+            device: &opened.device,
+            why: &opened.why,
+            seconds,
+            samples: progress.samples,
+            rays: progress.rays,
+            mrays_per_second: progress.mrays_per_second(),
+            samples_per_second: if progress.seconds > 0.0 { progress.samples as f64 / progress.seconds } else { 0.0 },
+            non_finite: rendered.non_finite,
+            outputs: outputs.iter().map(|path| path.display().to_string()).collect(),
+            warnings: &scene.warnings,
+        }
+    }
+}

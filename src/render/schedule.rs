@@ -1,0 +1,115 @@
+//! How a render is cut into batches.
+
+use crate::film::{Batch, Tile};
+
+/// Samples (over all pixels) of the first batch: little enough for any device.
+pub(super) const FIRST_BUDGET: u64 = 64 * 64;
+
+/// How many samples the next batch may hold, after one of `samples` took `seconds`: less at once if that was too long, else at
+/// most four times as many. A small batch (the rest of a pass) that took little says nothing against the present budget.
+pub(super) fn next_budget(budget: u64, samples: u64, seconds: f64, target: f64) -> u64 {
+    let fitting = samples as f64 * target / seconds.max(1e-9);
+    if seconds > target {
+        (fitting as u64).clamp(1, budget)
+    } else {
+        budget.max(fitting.min(4.0 * samples as f64) as u64)
+    }
+}
+
+/// The group that begins at sample `start`: its length. Powers of two up to 16, then 16.
+pub(super) fn group_length(start: u32) -> u32 {
+    start.clamp(1, 16)
+}
+
+/// Cuts the work into batches: pass after pass over the whole film, so that it fills evenly.
+#[derive(Debug)]
+pub(super) struct Schedule {
+    width: u32,
+    height: u32,
+    spp: u32,
+    /// The samples of the present pass.
+    pass: std::ops::Range<u32>,
+    /// Where the next tile begins.
+    x: u32,
+    y: u32,
+}
+
+impl Schedule {
+    pub(super) fn new((width, height): (u32, u32), spp: u32) -> Self {
+        Schedule { width, height, spp, pass: 0..0, x: 0, y: height }
+    }
+
+    /// The next batch, of at most `budget` samples and `max_sums` sums, but at least one group of one pixel.
+    pub(super) fn next(&mut self, budget: u64, max_sums: usize) -> Option<Batch> {
+        if self.width == 0 {
+            return None;
+        }
+        if self.y == self.height {
+            let start = self.pass.end;
+            if start >= self.spp || self.height == 0 {
+                return None;
+            }
+            (self.x, self.y) = (0, 0);
+            self.pass = start..self.pass_end(start, budget, max_sums as u64);
+        }
+        let samples = self.pass.clone();
+        let group = group_length(samples.start);
+        let length = u64::from(samples.end - samples.start);
+        let groups = length.div_ceil(u64::from(group));
+        let pixels = (budget / length).min(max_sums as u64 / groups).max(1);
+        let mut tile = Tile { x: self.x, y: self.y, width: self.width - self.x, height: 1 };
+        let rows = pixels / u64::from(self.width);
+        if self.x == 0 && rows > 0 {
+            // Bands of nearly equal height, so that no sliver is left over.
+            let left = u64::from(self.height - self.y);
+            tile.height = left.div_ceil(left.div_ceil(rows)) as u32;
+        } else {
+            tile.width = u64::from(tile.width).min(pixels) as u32;
+        }
+        self.x += tile.width;
+        if self.x == self.width {
+            (self.x, self.y) = (0, self.y + tile.height);
+        }
+        Some(Batch { tile, samples, group })
+    }
+
+    /// Where a pass from sample `start` ends: several groups of equal length if the whole film with them fits one batch.
+    fn pass_end(&self, start: u32, budget: u64, max_sums: u64) -> u32 {
+        let group = group_length(start);
+        let pixels = u64::from(self.width) * u64::from(self.height);
+        let fitting = (budget / (pixels * u64::from(group))).min(max_sums / pixels).max(1);
+        // Up to 16 the groups grow: only the first two are of equal length.
+        let equal = if start < 16 { if start == 0 { 2 } else { 1 } } else { u64::from(u32::MAX) };
+        let end = u64::from(start) + fitting.min(equal) * u64::from(group);
+        end.min(u64::from(self.spp)) as u32
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn group_bounds() {
+        let bounds: Vec<u32> =
+            std::iter::successors(Some(0), |b| Some(b + group_length(*b))).take_while(|b| *b <= 64).collect();
+        assert_eq!(bounds, [0, 1, 2, 4, 8, 16, 32, 48, 64]);
+    }
+
+    #[test]
+    fn a_fast_device_gets_many_groups_at_once() {
+        let mut schedule = Schedule::new((64, 64), 1000);
+        let passes: Vec<_> = std::iter::from_fn(|| schedule.next(4096 * 480, 1 << 30)).collect();
+        assert!(passes.iter().all(|b| b.tile.pixels() == 4096));
+        let ranges: Vec<_> = passes.iter().map(|b| b.samples.clone()).collect();
+        assert_eq!(ranges, [0..2, 2..4, 4..8, 8..16, 16..496, 496..976, 976..1000]);
+    }
+
+    #[test]
+    fn the_last_sample_number_is_an_end() {
+        let mut schedule = Schedule::new((1, 1), u32::MAX);
+        schedule.pass.end = u32::MAX - 7;
+        assert_eq!(schedule.next(1 << 40, 1 << 30).map(|b| b.samples), Some(u32::MAX - 7..u32::MAX));
+        assert_eq!(schedule.next(1 << 40, 1 << 30), None);
+    }
+}
