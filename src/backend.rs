@@ -70,6 +70,8 @@ pub struct DeviceReport {
     pub backend: std::result::Result<Backend, String>,
     /// Why that backend.
     pub why: String,
+    /// True for the device that is used unless another is asked for.
+    pub preferred: bool,
 }
 
 /// Opens the best tracer for a request.
@@ -197,6 +199,7 @@ fn find<'a>(devices: &'a [PhysicalDevice], wanted: &str) -> Result<&'a PhysicalD
 /// If there is no Vulkan loader or no driver, with what to install.
 pub fn devices() -> Result<Vec<DeviceReport>> {
     let devices = Instance::new()?.devices()?;
+    let best = choose(&devices, &Request::default()).ok().map(|(device, ..)| device.index);
     Ok(devices
         .iter()
         .map(|d| {
@@ -209,20 +212,8 @@ pub fn devices() -> Result<Vec<DeviceReport>> {
                 features: d.features(),
                 backend: d.usable().map(|()| backend),
                 why: why.into(),
+                preferred: best == Some(d.index),
             }
         })
         .collect())
-}
-
-/// The device that `auto` takes: of the usable ones a discrete GPU before an integrated, a virtual and a software one; of
-/// equals the first.
-pub fn preferred(devices: &[DeviceReport]) -> Option<&DeviceReport> {
-    let rank = |device: &DeviceReport| match device.kind {
-        "discrete GPU" => 0,
-        "integrated GPU" => 1,
-        "virtual GPU" => 2,
-        "software (CPU)" => 3,
-        _ => 4,
-    };
-    devices.iter().filter(|device| device.backend.is_ok()).min_by_key(|device| rank(device))
 }
