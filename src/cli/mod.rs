@@ -6,6 +6,7 @@ mod progress;
 pub mod render;
 mod stats;
 
+use luminaire::Error;
 use luminaire::backend::Backend;
 use std::io::Write;
 use std::path::PathBuf;
@@ -168,9 +169,12 @@ pub fn tell(line: &str) {
 }
 
 /// Prints a result on stdout. A reader that closes the pipe early (`| head`) is content with less.
-fn print(text: &str) {
+fn print(text: &str) -> luminaire::Result<()> {
     let mut out = std::io::stdout().lock();
-    let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(Error::write("standard output".as_ref(), e)),
+        _ => Ok(()),
+    }
 }
 
 /// Rows with their columns aligned, each line indented by `indent` spaces.
