@@ -1,8 +1,11 @@
 //! Which tracer runs, on which device, and why.
 
+use crate::gpu::{Device, GpuTracer, Instance, PhysicalDevice};
+use crate::reference::Reference;
 use crate::render::Tracer;
 use crate::scene::Scene;
 use crate::{Error, Result};
+use std::time::Instant;
 
 /// The three ways to trace rays.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -67,33 +70,150 @@ pub struct DeviceReport {
     pub backend: std::result::Result<Backend, String>,
     /// Why that backend.
     pub why: String,
+    /// True for the device that is used unless another is asked for.
+    pub preferred: bool,
 }
 
 /// Opens the best tracer for a request.
 ///
 /// # Errors
 /// If the request names a device or backend that is not there, or the scene does not fit it.
-pub fn open(_scene: &Scene, _request: &Request) -> Result<Opened> {
-    Err(Error::NoDevice("not built yet".into()))
+pub fn open(scene: &Scene, request: &Request) -> Result<Opened> {
+    if request.backend == Some(Backend::Cpu) {
+        if let Some(device) = &request.device {
+            return Err(Error::Usage(format!("--device {device} has no meaning with --backend cpu")));
+        }
+        return Ok(open_reference(scene, "as asked".into(), false));
+    }
+    let physical = match Instance::new().and_then(|i| i.devices()) {
+        Ok(devices) => devices,
+        // Only `auto` without a wish for a device may fall back.
+        Err(e) if request.backend.is_some() || request.device.is_some() => return Err(e),
+        Err(e) => return Ok(open_reference(scene, format!("no Vulkan here: {e}"), true)),
+    };
+    let (device, backend, why) = match choose(&physical, request) {
+        Ok(choice) => choice,
+        Err(e @ Error::NoDevice(_)) if request.backend.is_none() && request.device.is_none() => {
+            return Ok(open_reference(scene, e.to_string(), true));
+        }
+        Err(e) => return Err(e),
+    };
+    let start = Instant::now();
+    let ray_query = backend == Backend::RayQuery;
+    let name = format!("{} ({})", device.name, device.driver);
+    let device = Device::open(device, ray_query)?;
+    let tracer = Box::new(GpuTracer::new(&device, scene, ray_query)?);
+    Ok(Opened { tracer, backend, device: name, why, notice: false, build_seconds: start.elapsed().as_secs_f64() })
 }
 
-/// Every Vulkan device of this machine; empty with a reason where there is no Vulkan.
+fn open_reference(scene: &Scene, why: String, notice: bool) -> Opened {
+    let start = Instant::now();
+    let tracer = Box::new(Reference::new(scene));
+    let threads = rayon::current_num_threads();
+    let device = format!("{threads} CPU thread{}", if threads == 1 { "" } else { "s" });
+    Opened { tracer, backend: Backend::Cpu, device, why, notice, build_seconds: start.elapsed().as_secs_f64() }
+}
+
+/// The backend that is the faster one on a device, and why.
+fn preferred(device: &PhysicalDevice) -> (Backend, &'static str) {
+    match (device.ray_query, device.is_software()) {
+        (true, false) => (Backend::RayQuery, "the GPU offers ray queries"),
+        (true, true) => (Backend::ComputeBvh, "a software device, on which our BVH is faster than the driver's ray queries"),
+        (false, _) => (Backend::ComputeBvh, "the device offers no ray queries"),
+    }
+}
+
+/// How much we would like to run on a device: GPUs before software, discrete before integrated, ray queries first.
+fn rank(device: &PhysicalDevice) -> (u8, bool) {
+    use ash::vk::PhysicalDeviceType as Type;
+    let kind = match device.device_type {
+        Type::DISCRETE_GPU => 4,
+        Type::INTEGRATED_GPU => 3,
+        Type::VIRTUAL_GPU => 2,
+        Type::CPU => 0,
+        _ => 1,
+    };
+    (kind, device.ray_query)
+}
+
+/// The device and backend for a request.
+fn choose<'a>(devices: &'a [PhysicalDevice], request: &Request) -> Result<(&'a PhysicalDevice, Backend, String)> {
+    let wants_ray_query = request.backend == Some(Backend::RayQuery);
+    let device = match &request.device {
+        Some(wanted) => find(devices, wanted)?,
+        None => devices
+            .iter()
+            .filter(|d| d.usable().is_ok() && (d.ray_query || !wants_ray_query))
+            // The first of the best, in the loader's order.
+            .rev()
+            .max_by_key(|d| rank(d))
+            .ok_or_else(|| {
+                let found: Vec<String> = devices.iter().map(|d| d.name.clone()).collect();
+                let found = if found.is_empty() { "there is no device at all".into() } else { found.join(", ") };
+                Error::NoDevice(if wants_ray_query {
+                    format!("no device offers ray queries ({found}): use --backend compute-bvh, which needs none")
+                } else {
+                    format!("no Vulkan device is usable ({found}): see `luminaire devices`, or use --backend cpu")
+                })
+            })?,
+    };
+    device.usable().map_err(|reason| Error::NoDevice(format!("{} cannot be used: {reason}", device.name)))?;
+    if wants_ray_query && !device.ray_query {
+        let advice = if device.ray_tracing_pipeline { " (it has ray-tracing pipelines, but those are not used)" } else { "" };
+        return Err(Error::NoDevice(format!(
+            "{} offers no ray queries{advice}: use --backend compute-bvh, which needs none, or another --device",
+            device.name
+        )));
+    }
+    Ok(match request.backend {
+        Some(backend) => (device, backend, "as asked".into()),
+        None => {
+            let (backend, why) = preferred(device);
+            (device, backend, why.into())
+        }
+    })
+}
+
+/// The device with this index, or whose name contains this text (without regard to case).
+fn find<'a>(devices: &'a [PhysicalDevice], wanted: &str) -> Result<&'a PhysicalDevice> {
+    let list = || devices.iter().map(|d| format!("  {}: {}", d.index, d.name)).collect::<Vec<_>>().join("\n");
+    if let Ok(index) = wanted.parse::<usize>() {
+        return devices
+            .get(index)
+            .ok_or_else(|| Error::NoDevice(format!("there is no device {index}; there are\n{}", list())));
+    }
+    let lower = wanted.to_lowercase();
+    let mut found = devices.iter().filter(|d| d.name.to_lowercase().contains(&lower));
+    match (found.next(), found.next()) {
+        (Some(device), None) => Ok(device),
+        (Some(_), Some(_)) => {
+            Err(Error::NoDevice(format!("several devices are called like `{wanted}`: give an index\n{}", list())))
+        }
+        _ => Err(Error::NoDevice(format!("no device is called like `{wanted}`; there are\n{}", list()))),
+    }
+}
+
+/// Every Vulkan device of this machine.
 ///
 /// # Errors
-/// [`Error::NoDevice`] if there is no Vulkan loader.
+/// If there is no Vulkan loader or no driver, with what to install.
 pub fn devices() -> Result<Vec<DeviceReport>> {
-    Ok(Vec::new())
-}
-
-/// The device that `auto` takes: of the usable ones a discrete GPU before an integrated, a virtual and a software one; of
-/// equals the first.
-pub fn preferred(devices: &[DeviceReport]) -> Option<&DeviceReport> {
-    let rank = |device: &DeviceReport| match device.kind {
-        "discrete GPU" => 0,
-        "integrated GPU" => 1,
-        "virtual GPU" => 2,
-        "software (CPU)" => 3,
-        _ => 4,
-    };
-    devices.iter().filter(|device| device.backend.is_ok()).min_by_key(|device| rank(device))
+    let devices = Instance::new()?.devices()?;
+    let best = choose(&devices, &Request::default()).ok().map(|(device, ..)| device.index);
+    Ok(devices
+        .iter()
+        .map(|d| {
+            let (backend, why) = preferred(d);
+            DeviceReport {
+                index: d.index,
+                name: d.name.clone(),
+                driver: d.driver.clone(),
+                kind: d.kind(),
+                features: d.features(),
+                backend: d.usable().map(|()| backend),
+                why: why.into(),
+                preferred: best == Some(d.index),
+            }
+        })
+        .collect())
 }

@@ -50,7 +50,7 @@ fn report(devices: &[DeviceReport]) -> String {
         text += &table(3, &rows);
         text += "\n";
     }
-    if let Some(best) = backend::preferred(devices)
+    if let Some(best) = devices.iter().find(|d| d.preferred)
         && let Ok(backend) = &best.backend
     {
         text += &format!("auto would run {backend} on device {}, {}\n", best.index, best.name);
@@ -73,6 +73,7 @@ mod tests {
             features: vec![("ray query".into(), "yes".into())],
             backend,
             why: "it has RT cores".into(),
+            preferred: index == 2,
         };
         let devices = [
             device(0, "software (CPU)", Ok(Backend::ComputeBvh)),

@@ -1,1 +1,26 @@
-//! gpu
+//! Every Vulkan handle lives here (and in [`crate::accel`]): device, buffers, commands, pipelines, and the GPU tracer.
+//!
+//! Each object holds an `Arc<Device>`; the device owns the instance, the allocator and the queue and drops them in order.
+//! A raw handle is wrapped the moment it exists, so an early return cannot leak it.
+
+mod buffer;
+mod commands;
+#[cfg(feature = "shaderc")]
+pub(crate) mod compile;
+mod device;
+mod instance;
+mod kernel;
+pub mod layout;
+pub mod model;
+pub mod probe;
+mod shader;
+mod tracer;
+
+pub use buffer::{Buffer, TexelBuffer};
+pub use device::Device;
+pub use instance::{Instance, PhysicalDevice, validation_messages};
+pub use kernel::{Binding, Kernel};
+pub use shader::{SHADERS, Shader};
+pub use tracer::GpuTracer;
+
+pub(crate) use commands::{barrier, submit};

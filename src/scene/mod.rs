@@ -12,6 +12,7 @@ mod preview;
 mod toml;
 
 pub use load::load;
+pub(crate) use luminaire::widen;
 pub use luminaire::{EmissiveTriangle, LuminaireTable, SampledLuminaire};
 
 use glam::{Affine3A, Vec3};

@@ -1,0 +1,180 @@
+// closest_hit and occluded on a two-level compressed wide BVH in plain buffers. Include it through intersect.glsl.
+//
+// The nodes are those of Ylitie, Karras and Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide
+// BVHs" (HPG 2017), as the obvhs crate lays them out: 80 bytes for up to eight children. Triangles are tested by Woop,
+// Benthin and Wald, "Watertight Ray/Triangle Intersection" (JCGT 2(1), 2013). Leaf boxes come padded (src/bvh/mod.rs), which
+// covers the rounding of the box test.
+
+// Five texels a node; the top level starts at node 0, or, without INSTANCES, the only mesh does.
+layout(set = 0, binding = 1) uniform usamplerBuffer nodes;
+
+// At most one entry a level and one more for the instances of a top-level leaf; src/bvh/mod.rs refuses deeper trees.
+const int STACK_SIZE = 32;
+
+// A ray in the space that is being traversed, with what the box and triangle tests need of it.
+struct TraversalRay {
+    vec3 origin;
+    vec3 inverse;      // 1 / direction, finite
+    uint octant_inv4;  // order of the children, in each byte
+    uint axis;         // largest component of the direction
+    vec3 shear;
+};
+
+// Moves the largest axis to z.
+vec3 permute(vec3 v, uint axis) { return axis == 0u ? v.yzx : (axis == 1u ? v.zxy : v); }
+
+TraversalRay traversal_ray(vec3 origin, vec3 direction) {
+    TraversalRay ray;
+    ray.origin = origin;
+    vec3 size = abs(direction);
+    float largest = max(size.x, max(size.y, size.z));
+    // A component of zero would give infinity times zero in the box test; the substitute bends the ray by 1e-18.
+    vec3 safe = mix(direction, vec3(largest * 1e-18), lessThan(size, vec3(largest * 1e-18)));
+    ray.inverse = 1.0 / safe;
+    ray.octant_inv4 = (safe.x < 0.0 ? 0u : 0x04040404u) | (safe.y < 0.0 ? 0u : 0x02020202u) | (safe.z < 0.0 ? 0u : 0x01010101u);
+    ray.axis = size.x == largest ? 0u : (size.y == largest ? 1u : 2u);
+    vec3 d = permute(direction, ray.axis);
+    ray.shear = vec3(d.xy / d.z, 1.0 / d.z);
+    return ray;
+}
+
+float byte_of(uint word, uint index) { return float(bitfieldExtract(word, int(8u * index), 8)); }
+
+// Tests the eight children of a node; returns one bit for each triangle (0 to 23) and each inner child (24 to 31, the
+// nearest octant highest) that the ray may hit before `t_max`.
+uint intersect_node(TraversalRay ray, float t_max, uint node, out uvec2 bases, out uint inner_mask) {
+    int base = int(node) * 5;
+    uvec4 n0 = texelFetch(nodes, base);
+    uvec4 n1 = texelFetch(nodes, base + 1);
+    uvec4 nx = texelFetch(nodes, base + 2);
+    uvec4 ny = texelFetch(nodes, base + 3);
+    uvec4 nz = texelFetch(nodes, base + 4);
+    bases = n1.xy;
+    inner_mask = n0.w >> 24u;
+    vec3 extent = uintBitsToFloat(uvec3(n0.w << 23u, (n0.w << 15u) & 0x7f800000u, (n0.w << 7u) & 0x7f800000u));
+    vec3 scale = extent * ray.inverse;
+    vec3 offset = (uintBitsToFloat(n0.xyz) - ray.origin) * ray.inverse;
+    // Entry planes in xy, exit planes in zw.
+    if (ray.inverse.x < 0.0) nx = nx.zwxy;
+    if (ray.inverse.y < 0.0) ny = ny.zwxy;
+    if (ray.inverse.z < 0.0) nz = nz.zwxy;
+    uint mask = 0u;
+    for (uint half_index = 0u; half_index < 2u; half_index++) {
+        bool second = half_index == 1u;
+        uint meta = second ? n1.w : n1.z;
+        uvec3 entry = second ? uvec3(nx.y, ny.y, nz.y) : uvec3(nx.x, ny.x, nz.x);
+        uvec3 leave = second ? uvec3(nx.w, ny.w, nz.w) : uvec3(nx.z, ny.z, nz.z);
+        uint inner = (meta & (meta << 1u)) & 0x10101010u;
+        uint bit_index = (meta ^ (ray.octant_inv4 & ((inner >> 4u) * 0xffu))) & 0x1f1f1f1fu;
+        uint bits = (meta >> 5u) & 0x07070707u;
+        for (uint child = 0u; child < 4u; child++) {
+            vec3 t0 = vec3(byte_of(entry.x, child), byte_of(entry.y, child), byte_of(entry.z, child)) * scale + offset;
+            vec3 t1 = vec3(byte_of(leave.x, child), byte_of(leave.y, child), byte_of(leave.z, child)) * scale + offset;
+            float near = max(max(t0.x, t0.y), max(t0.z, 0.0));
+            float far = min(min(t1.x, t1.y), t1.z);
+            // 1 + 4 * 2^-23 on the far side: rays of far-away origins round by their distance, not by the box (Ize 2013).
+            if (near <= min(far * 1.0000005, t_max)) {
+                mask |= bitfieldExtract(bits, int(8u * child), 8) << bitfieldExtract(bit_index, int(8u * child), 8);
+            }
+        }
+    }
+    return mask;
+}
+
+// Woop's test: an edge shared by two triangles gives the same numbers for both, so no ray slips through between them.
+bool intersect_triangle(TraversalRay ray, float t_max, uint triangle, out float t, out vec2 barycentric) {
+    int base = int(triangle) * 3;
+    vec3 a = permute(uintBitsToFloat(texelFetch(triangles, base).xyz) - ray.origin, ray.axis);
+    vec3 b = permute(uintBitsToFloat(texelFetch(triangles, base + 1).xyz) - ray.origin, ray.axis);
+    vec3 c = permute(uintBitsToFloat(texelFetch(triangles, base + 2).xyz) - ray.origin, ray.axis);
+    precise vec2 a2 = a.xy - ray.shear.xy * a.z;
+    precise vec2 b2 = b.xy - ray.shear.xy * b.z;
+    precise vec2 c2 = c.xy - ray.shear.xy * c.z;
+    // `precise` forbids fused multiply-add, which would make the two sides of an edge differ.
+    precise float u = c2.x * b2.y - c2.y * b2.x;
+    precise float v = a2.x * c2.y - a2.y * c2.x;
+    precise float w = b2.x * a2.y - b2.y * a2.x;
+    if ((u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0)) return false;
+    float determinant = u + v + w;
+    if (determinant == 0.0) return false;
+    float reciprocal = 1.0 / determinant;
+    t = (u * a.z + v * b.z + w * c.z) * ray.shear.z * reciprocal;
+    barycentric = vec2(v, w) * reciprocal;
+    return t > 0.0 && t < t_max;
+}
+
+bool traverse(vec3 origin, vec3 direction, float t_max, const bool any_hit, out Hit hit) {
+    uvec2 stack[STACK_SIZE];
+    int depth = 0;
+    TraversalRay world = traversal_ray(origin, direction);
+    TraversalRay ray = world;
+    uint object = INSTANCES ? NONE : 0u;    // NONE while in the top level
+    int object_depth = 0;                   // where the stack stood when the object was entered
+    // A group of inner children: x is the index of the first, the high byte of y those still to visit, the low byte all
+    // that are inner. A group of leaves: x is the index of the first, y has a bit for each still to visit.
+    uvec2 inner = uvec2(0u, 0x80000000u);
+    uvec2 leaves = uvec2(0u);
+    hit.t = t_max;
+    bool found = false;
+    // A ray that is no ray (NaN, infinite or zero direction) hits nothing.
+    float size = dot(abs(direction), vec3(1.0));
+    if (!(size > 0.0 && size < INFINITY)) return false;
+
+    while (true) {
+        if (inner.y > 0x00ffffffu) {
+            uint bit = uint(findMSB(inner.y));
+            uint slot = (bit - 24u) ^ (ray.octant_inv4 & 0xffu);
+            uint node = inner.x + uint(bitCount(inner.y & ~(0xffffffffu << slot) & 0xffu));
+            inner.y &= ~(1u << bit);
+            if (inner.y > 0x00ffffffu) stack[depth++] = inner;
+            uvec2 bases;
+            uint inner_mask;
+            uint mask = intersect_node(ray, hit.t, node, bases, inner_mask);
+            inner = uvec2(bases.x, (mask & 0xff000000u) | inner_mask);
+            leaves = uvec2(bases.y, mask & 0x00ffffffu);
+        }
+        while (leaves.y != 0u) {
+            uint bit = uint(findMSB(leaves.y));
+            leaves.y &= ~(1u << bit);
+            uint index = leaves.x + bit;
+            if (INSTANCES && object == NONE) {
+                if (inner.y > 0x00ffffffu) stack[depth++] = inner;
+                if (leaves.y != 0u) stack[depth++] = leaves;
+                object = index;
+                object_depth = depth;
+                vec4 to_object[3] = objects[object].world_to_object;
+                ray = traversal_ray(row_dot(to_object, origin) + translation(to_object), row_dot(to_object, direction));
+                inner = uvec2(objects[object].root_node, 0x80000000u);
+                leaves.y = 0u;
+            } else {
+                float t;
+                vec2 barycentric;
+                if (intersect_triangle(ray, hit.t, index, t, barycentric)) {
+                    found = true;
+                    if (any_hit) return true;
+                    hit = Hit(t, object, index, barycentric);
+                }
+            }
+        }
+        if (inner.y <= 0x00ffffffu) {
+            if (INSTANCES && object != NONE && depth == object_depth) {
+                object = NONE;
+                ray = world;
+            }
+            if (depth == 0) break;
+            uvec2 top = stack[--depth];
+            if (top.y > 0x00ffffffu) inner = top;
+            else leaves = top;
+        }
+    }
+    return found;
+}
+
+bool closest_hit(vec3 origin, vec3 direction, float t_max, out Hit hit) {
+    return traverse(origin, direction, t_max, false, hit);
+}
+
+bool occluded(vec3 origin, vec3 direction, float t_max) {
+    Hit hit;
+    return traverse(origin, direction, t_max, true, hit);
+}

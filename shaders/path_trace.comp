@@ -1,0 +1,67 @@
+// The path tracer: every invocation adds up a group of samples of one pixel.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#ifdef RAY_QUERY
+#extension GL_EXT_ray_query : require
+#endif
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+#include "scene.glsl"
+#include "rng.glsl"
+#include "warp.glsl"
+#include "intersect.glsl"
+#include "surfel.glsl"
+#include "scatter.glsl"
+#include "luminaire.glsl"
+#include "sensor.glsl"
+#include "path.glsl"
+
+// One batch: the samples [first_sample, end_sample) of a tile, in groups.
+layout(push_constant, std430) uniform Batch {
+    uint tile_x;
+    uint tile_y;
+    uint tile_width;
+    uint tile_height;
+    uint first_sample;
+    uint end_sample;
+    uint group;
+} batch;
+
+struct PixelSum {
+    vec3 radiance;
+    uint rays;
+};
+layout(set = 0, binding = 7, std430) writeonly buffer Sums { PixelSum sums[]; };
+layout(set = 0, binding = 8, std430) buffer Counters { uint non_finite; };
+
+bool is_finite(vec3 v) {
+    // By the bits: a compiler may assume that no float is infinite.
+    uvec3 exponent = floatBitsToUint(v) & 0x7f800000u;
+    return all(notEqual(exponent, uvec3(0x7f800000u)));
+}
+
+void main() {
+    uvec3 id = gl_GlobalInvocationID;
+    if (id.x >= batch.tile_width || id.y >= batch.tile_height) return;
+    uvec2 pixel = uvec2(batch.tile_x, batch.tile_y) + id.xy;
+    uint pixel_index = pixel.y * frame.width + pixel.x;
+    uint sample_index = batch.first_sample + id.z * batch.group;
+    uint end = min(sample_index + batch.group, batch.end_sample);
+
+    // One loop over the bounces of all samples: a lane whose path ends starts its next one while the others go on.
+    vec3 sum = vec3(0.0);
+    uint rays = 0u;
+    Path path = camera_path(pixel, pixel_index, sample_index);
+    while (true) {
+        if (!extend_path(path, pixel_index, sample_index, rays)) {
+            if (is_finite(path.radiance)) sum += path.radiance;
+            else atomicAdd(non_finite, 1u);
+            sample_index++;
+            if (sample_index >= end) break;
+            path = camera_path(pixel, pixel_index, sample_index);
+        }
+    }
+    uint slot = (id.z * batch.tile_height + id.y) * batch.tile_width + id.x;
+    sums[slot] = PixelSum(sum, rays);
+}

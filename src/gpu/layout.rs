@@ -1,0 +1,155 @@
+//! The structures that the host shares with the shaders (`shaders/scene.glsl`, `path_trace.comp`, `probe.comp`).
+//!
+//! [`STRUCTS`] lists every member's offset; a test compares it with the offsets in the shipped SPIR-V.
+
+use bytemuck::{Pod, Zeroable};
+
+/// Name and byte offset of a member.
+pub type Member = (&'static str, usize);
+
+/// GLSL name, size and members of every shared structure.
+pub const STRUCTS: &[(&str, usize, &[Member])] = &[
+    ("Frame", size_of::<Frame>(), Frame::MEMBERS),
+    ("Object", size_of::<Object>(), Object::MEMBERS),
+    ("Material", size_of::<Material>(), Material::MEMBERS),
+    ("Luminaire", size_of::<Luminaire>(), Luminaire::MEMBERS),
+    ("Batch", size_of::<Batch>(), Batch::MEMBERS),
+    ("PixelSum", size_of::<PixelSum>(), PixelSum::MEMBERS),
+    ("Call", size_of::<Call>(), Call::MEMBERS),
+];
+
+macro_rules! shared {
+    ($(#[$doc:meta])* $name:ident { $($(#[$member_doc:meta])* $member:ident: $type:ty,)* }) => {
+        $(#[$doc])*
+        #[repr(C)]
+        #[derive(Debug, Clone, Copy, Default, PartialEq, Pod, Zeroable)]
+        pub struct $name { $($(#[$member_doc])* pub $member: $type,)* }
+
+        impl $name {
+            /// Name and offset of every member.
+            pub const MEMBERS: &[Member] = &[$((stringify!($member), std::mem::offset_of!($name, $member)),)*];
+        }
+    };
+}
+
+shared! {
+    /// Sensor and estimator: constant during a render (binding 0).
+    Frame {
+        /// Eye point.
+        position: [f32; 4],
+        /// Unit line of sight.
+        forward: [f32; 4],
+        /// To the right edge of the picture, at distance 1.
+        right: [f32; 4],
+        /// To the upper edge.
+        up: [f32; 4],
+        /// Ambient radiance of the simple ray tracer.
+        ambient: [f32; 4],
+        /// Film width in pixels.
+        width: u32,
+        /// Film height in pixels.
+        height: u32,
+        /// Seed of the random numbers.
+        seed: u32,
+        /// Entries of the luminaire table.
+        luminaire_count: u32,
+        /// Most indirect bounces; `u32::MAX` is no limit.
+        max_bounces: u32,
+        /// To a multiple of 16 bytes.
+        padding: [u32; 3],
+    }
+}
+
+shared! {
+    /// An instance (binding 4).
+    Object {
+        /// Rows of the map to world space.
+        object_to_world: [[f32; 4]; 3],
+        /// Rows of its inverse.
+        world_to_object: [[f32; 4]; 3],
+        /// Root of the mesh's BVH.
+        root_node: u32,
+        /// The mesh's first triangle.
+        triangle_offset: u32,
+        /// Replaces the triangles' own material unless `u32::MAX`.
+        material: u32,
+        /// Index in the scene.
+        scene_index: u32,
+    }
+}
+
+shared! {
+    /// A material (binding 5).
+    Material {
+        /// Ambient albedo; w: normalisation of the glossy lobe.
+        ambient: [f32; 4],
+        /// Diffuse albedo; w: probability of survival.
+        lambert: [f32; 4],
+        /// Glossy albedo; w: exponent.
+        glossy: [f32; 4],
+        /// Emitted radiance; w unused.
+        emission: [f32; 4],
+    }
+}
+
+shared! {
+    /// An entry of the luminaire table (binding 6).
+    Luminaire {
+        /// Position, direction towards the light, or first corner.
+        a: [f32; 4],
+        /// Second corner; w: area.
+        b: [f32; 4],
+        /// Third corner; w: bound on the error of a point on the triangle, in each coordinate.
+        c: [f32; 4],
+        /// Intensity, irradiance or radiance; w: probability of being chosen.
+        radiance: [f32; 4],
+        /// 0: point, 1: infinite, 2: area.
+        kind: u32,
+        /// Alias table: below it, this entry.
+        threshold: u32,
+        /// Alias table: else that one.
+        alias_index: u32,
+        /// To a multiple of 16 bytes.
+        padding: u32,
+    }
+}
+
+shared! {
+    /// Push constants of the path tracer.
+    Batch {
+        /// Left column of the tile.
+        tile_x: u32,
+        /// Top row.
+        tile_y: u32,
+        /// Columns.
+        tile_width: u32,
+        /// Rows.
+        tile_height: u32,
+        /// First sample.
+        first_sample: u32,
+        /// One past the last.
+        end_sample: u32,
+        /// Samples in a group.
+        group: u32,
+    }
+}
+
+shared! {
+    /// What the path tracer writes for a pixel and group (binding 7).
+    PixelSum {
+        /// Radiance, added up.
+        radiance: [f32; 3],
+        /// Rays traced.
+        rays: u32,
+    }
+}
+
+shared! {
+    /// Push constants of the probe.
+    Call {
+        /// Which function.
+        function: u32,
+        /// How many calls.
+        count: u32,
+    }
+}

@@ -1,0 +1,108 @@
+//! Runs single shader functions over arrays, so that tests can hold each against its twin.
+
+use super::shader::Shader;
+use super::tracer::GpuScene;
+use super::{Binding, Buffer, Device, Kernel, commands, layout};
+use crate::Result;
+use crate::scene::Scene;
+use ash::vk;
+use gpu_allocator::MemoryLocation;
+use std::sync::Arc;
+
+/// A function of `shaders/probe.comp`. Arguments and results are two `uvec4` a call, floats by their bits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Function {
+    /// pixel, sample, block, seed to four numbers.
+    Random4 = 0,
+    /// (origin, t_max), (direction) to (t, object, triangle), (barycentrics); a miss has t = infinity.
+    ClosestHit = 1,
+    /// The same to 0 or 1.
+    Occluded = 2,
+    /// (u, v) to a direction about +z.
+    CosineHemisphere = 3,
+    /// (u, v) to barycentric coordinates.
+    UniformTriangle = 4,
+    /// Random bits to an index into the luminaire table.
+    ChooseLuminaire = 5,
+    /// (wo, material), (wi) to the BRDF on a surface whose normal is +z.
+    Bsdf = 6,
+    /// A ray to its first hit, and mirrored off it to the second, which comes back as from `ClosestHit`.
+    Leave = 7,
+}
+
+/// Arguments or results of one call.
+pub type Call = [[u32; 4]; 2];
+
+/// The probe with a scene.
+pub struct Probe {
+    kernel_scene: GpuScene,
+    ray_query: bool,
+    device: Arc<Device>,
+}
+
+impl Probe {
+    /// Uploads a scene.
+    ///
+    /// # Errors
+    /// As for [`super::GpuTracer::new`].
+    pub fn new(device: &Arc<Device>, scene: &Scene, ray_query: bool) -> Result<Self> {
+        let kernel_scene = GpuScene::new(device, scene, ray_query)?;
+        Ok(Probe { kernel_scene, ray_query, device: device.clone() })
+    }
+
+    /// Calls `function` once for each of `arguments`.
+    ///
+    /// # Errors
+    /// If the driver fails.
+    pub fn call(&self, function: Function, arguments: &[Call]) -> Result<Vec<Call>> {
+        let device = &self.device;
+        let input = Buffer::storage(device, "probe in", arguments)?;
+        let result_usage = vk::BufferUsageFlags::STORAGE_BUFFER
+            | vk::BufferUsageFlags::TRANSFER_SRC
+            | vk::BufferUsageFlags::TRANSFER_DST;
+        let output = Buffer::new(device, "probe out", input.size, result_usage, MemoryLocation::GpuOnly)?;
+        let readback = Buffer::new(
+            device,
+            "probe readback",
+            input.size,
+            vk::BufferUsageFlags::TRANSFER_DST,
+            MemoryLocation::GpuToCpu,
+        )?;
+        let mut bindings = self.kernel_scene.bindings();
+        bindings.extend([Binding::Storage(&output), Binding::Storage(&input)]);
+        let push = layout::Call { function: function as u32, count: arguments.len() as u32 };
+        let kernel = Kernel::new(
+            device,
+            Shader::probe(self.ray_query),
+            &self.kernel_scene.model.constants(),
+            &bindings,
+            size_of::<layout::Call>() as u32,
+        )?;
+        commands::submit(device, "probe", |cmd| {
+            let shader = vk::PipelineStageFlags::COMPUTE_SHADER;
+            let transfer = vk::PipelineStageFlags::TRANSFER;
+            // SAFETY (both): the buffers are alive until the submission has ended and equally large.
+            unsafe { device.raw.cmd_fill_buffer(cmd, output.raw, 0, vk::WHOLE_SIZE, 0) };
+            commands::barrier(
+                device,
+                cmd,
+                (transfer, vk::AccessFlags::TRANSFER_WRITE),
+                (shader, vk::AccessFlags::SHADER_WRITE),
+            );
+            kernel.dispatch(cmd, bytemuck::bytes_of(&push), [push.count.div_ceil(64), 1, 1]);
+            commands::barrier(
+                device,
+                cmd,
+                (shader, vk::AccessFlags::SHADER_WRITE),
+                (transfer, vk::AccessFlags::TRANSFER_READ),
+            );
+            let copy = [vk::BufferCopy { src_offset: 0, dst_offset: 0, size: input.size }];
+            unsafe { device.raw.cmd_copy_buffer(cmd, output.raw, readback.raw, &copy) };
+            let host = (vk::PipelineStageFlags::HOST, vk::AccessFlags::HOST_READ);
+            commands::barrier(device, cmd, (transfer, vk::AccessFlags::TRANSFER_WRITE), host);
+        })?;
+        let bytes = &readback.mapped()?[..size_of_val(arguments)];
+        Ok(bytemuck::pod_collect_to_vec(bytes))
+    }
+}

@@ -1,0 +1,250 @@
+//! The GPU tracer: a scene on a device, and the kernel that traces batches of it.
+
+use super::model::KernelModel;
+use super::shader::Shader;
+use super::{Binding, Buffer, Device, Kernel, commands, layout};
+use crate::Result;
+use crate::accel::Geometry;
+use crate::film::{Batch, PixelSum};
+use crate::render::{Traced, Tracer};
+use crate::scene::{
+    EmissiveTriangle, Integrator, Luminaire, LuminaireTable, Material, SampledLuminaire, Scene, Sensor, widen,
+};
+use ash::vk;
+use glam::{DMat3, DVec3, Vec3};
+use gpu_allocator::MemoryLocation;
+use std::sync::Arc;
+
+/// The most sums of one batch: 16 MiB of results.
+const MAX_SUMS: usize = 1 << 20;
+/// Workgroups are 8 x 8 pixels (`shaders/path_trace.comp`).
+const WORKGROUP: u32 = 8;
+/// A path whose surfaces absorb nothing must still end.
+const MAX_SURVIVAL: f64 = 0.9999;
+
+/// A scene as the kernels see it: bindings 0 and 1 to 6.
+pub(super) struct GpuScene {
+    frame: Buffer,
+    geometry: Geometry,
+    materials: Buffer,
+    luminaires: Buffer,
+    pub(super) model: KernelModel,
+}
+
+impl GpuScene {
+    pub(super) fn new(device: &Arc<Device>, scene: &Scene, ray_query: bool) -> Result<Self> {
+        let table = LuminaireTable::new(scene);
+        let model = KernelModel::with(scene, &table);
+        let geometry = Geometry::build(device, scene, ray_query, model.instances)?;
+        let materials: Vec<_> = scene.materials.iter().map(material).collect();
+        let luminaires: Vec<_> = (0..table.entries.len()).map(|i| luminaire(scene, &table, i)).collect();
+        let frame = [frame(scene, table.entries.len() as u32)];
+        Ok(GpuScene {
+            frame: Buffer::upload(device, "frame", &frame, vk::BufferUsageFlags::UNIFORM_BUFFER)?,
+            geometry,
+            materials: Buffer::storage(device, "materials", &materials)?,
+            luminaires: Buffer::storage(device, "luminaires", &luminaires)?,
+            model,
+        })
+    }
+
+    /// Bindings 0 to 6.
+    pub(super) fn bindings(&self) -> Vec<Binding<'_>> {
+        let mut bindings = vec![Binding::Uniform(&self.frame)];
+        bindings.extend(self.geometry.bindings());
+        bindings.extend([Binding::Storage(&self.materials), Binding::Storage(&self.luminaires)]);
+        bindings
+    }
+}
+
+/// Traces batches on a Vulkan device.
+pub struct GpuTracer {
+    // Dropped before what it is bound to.
+    kernel: Kernel,
+    _scene: GpuScene,
+    sums: Buffer,
+    counters: Buffer,
+    readback: Buffer,
+    device: Arc<Device>,
+    /// What the kernel models.
+    pub model: KernelModel,
+}
+
+impl GpuTracer {
+    /// Uploads a scene, builds its acceleration structure, and the kernel that it needs.
+    ///
+    /// # Errors
+    /// If the scene is beyond a limit of the device, or the driver fails.
+    pub fn new(device: &Arc<Device>, scene: &Scene, ray_query: bool) -> Result<Self> {
+        let gpu_scene = GpuScene::new(device, scene, ray_query)?;
+        let size = (MAX_SUMS * size_of::<layout::PixelSum>()) as u64;
+        let result = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::TRANSFER_SRC;
+        let sums = Buffer::new(device, "sums", size, result, MemoryLocation::GpuOnly)?;
+        let counters =
+            Buffer::new(device, "counters", 16, result | vk::BufferUsageFlags::TRANSFER_DST, MemoryLocation::GpuOnly)?;
+        // The counters come back behind the sums.
+        let readback =
+            Buffer::new(device, "readback", size + 16, vk::BufferUsageFlags::TRANSFER_DST, MemoryLocation::GpuToCpu)?;
+        let mut bindings = gpu_scene.bindings();
+        bindings.extend([Binding::Storage(&sums), Binding::Storage(&counters)]);
+        let kernel = Kernel::new(
+            device,
+            Shader::path_trace(ray_query),
+            &gpu_scene.model.constants(),
+            &bindings,
+            size_of::<layout::Batch>() as u32,
+        )?;
+        let model = gpu_scene.model;
+        Ok(GpuTracer { kernel, _scene: gpu_scene, sums, counters, readback, device: device.clone(), model })
+    }
+}
+
+impl Tracer for GpuTracer {
+    fn trace(&mut self, batch: &Batch) -> Result<Traced> {
+        let tile = batch.tile;
+        let groups = batch.groups();
+        let count = tile.pixels() * groups as usize;
+        assert!(count <= MAX_SUMS, "a batch of {count} sums is more than max_sums()");
+        if count == 0 {
+            return Ok(Traced::default());
+        }
+        let push = layout::Batch {
+            tile_x: tile.x,
+            tile_y: tile.y,
+            tile_width: tile.width,
+            tile_height: tile.height,
+            first_sample: batch.samples.start,
+            end_sample: batch.samples.end,
+            group: batch.group,
+        };
+        let size = (count * size_of::<layout::PixelSum>()) as u64;
+        let device_seconds = commands::submit(&self.device, "path trace", |cmd| {
+            let raw = &self.device.raw;
+            // SAFETY (both): the buffers are alive until the submission has ended, and the ranges lie inside them.
+            unsafe { raw.cmd_fill_buffer(cmd, self.counters.raw, 0, vk::WHOLE_SIZE, 0) };
+            let shader = vk::PipelineStageFlags::COMPUTE_SHADER;
+            let transfer = vk::PipelineStageFlags::TRANSFER;
+            let shader_access = vk::AccessFlags::SHADER_READ | vk::AccessFlags::SHADER_WRITE;
+            commands::barrier(&self.device, cmd, (transfer, vk::AccessFlags::TRANSFER_WRITE), (shader, shader_access));
+            let workgroups = [tile.width.div_ceil(WORKGROUP), tile.height.div_ceil(WORKGROUP), groups];
+            self.kernel.dispatch(cmd, bytemuck::bytes_of(&push), workgroups);
+            commands::barrier(
+                &self.device,
+                cmd,
+                (shader, vk::AccessFlags::SHADER_WRITE),
+                (transfer, vk::AccessFlags::TRANSFER_READ),
+            );
+            let sums = [vk::BufferCopy { src_offset: 0, dst_offset: 0, size }];
+            let counters = [vk::BufferCopy { src_offset: 0, dst_offset: size, size: 16 }];
+            unsafe {
+                raw.cmd_copy_buffer(cmd, self.sums.raw, self.readback.raw, &sums);
+                raw.cmd_copy_buffer(cmd, self.counters.raw, self.readback.raw, &counters);
+            }
+            let host = (vk::PipelineStageFlags::HOST, vk::AccessFlags::HOST_READ);
+            commands::barrier(&self.device, cmd, (transfer, vk::AccessFlags::TRANSFER_WRITE), host);
+        })?;
+        let bytes = &self.readback.mapped()?[..size as usize + 16];
+        let (sums, counters) = bytes.split_at(size as usize);
+        let sums = bytemuck::cast_slice::<u8, layout::PixelSum>(sums)
+            .iter()
+            .map(|s| PixelSum { radiance: s.radiance.map(f64::from), rays: s.rays })
+            .collect();
+        let non_finite = bytemuck::cast_slice::<u8, u32>(counters)[0];
+        Ok(Traced { sums, non_finite, device_seconds })
+    }
+
+    fn max_sums(&self) -> usize {
+        MAX_SUMS
+    }
+
+    fn batch_seconds(&self) -> f64 {
+        // A GPU also draws the desktop, and its driver kills what runs for seconds.
+        if self.device.software { 0.25 } else { 0.05 }
+    }
+}
+
+/// `v` with a fourth component.
+fn vec4(v: Vec3, w: f64) -> [f32; 4] {
+    [v.x, v.y, v.z, w as f32]
+}
+
+fn frame(scene: &Scene, luminaire_count: u32) -> layout::Frame {
+    let Sensor { position, target, up, fov } = scene.sensor;
+    // In f64 like the reference: these are rounded once.
+    let half = (f64::from(fov).to_radians() / 2.0).tan();
+    let forward = (target.as_dvec3() - position.as_dvec3()).normalize();
+    let right = forward.cross(up.as_dvec3()).normalize();
+    let true_up = right.cross(forward);
+    let aspect = f64::from(scene.film.width) / f64::from(scene.film.height);
+    let (ambient, max_bounces) = match scene.integrator {
+        Integrator::Simple { ambient } => (ambient, 0),
+        Integrator::Path { max_bounces } => (Vec3::ZERO, max_bounces.unwrap_or(u32::MAX)),
+    };
+    layout::Frame {
+        position: vec4(position, 0.0),
+        forward: vec4(forward.as_vec3(), 0.0),
+        right: vec4((right * half * aspect).as_vec3(), 0.0),
+        up: vec4((true_up * half).as_vec3(), 0.0),
+        ambient: vec4(ambient, 0.0),
+        width: scene.film.width,
+        height: scene.film.height,
+        seed: scene.settings.seed,
+        luminaire_count,
+        max_bounces,
+        padding: [0; 3],
+    }
+}
+
+fn material(material: &Material) -> layout::Material {
+    let m = f64::from(material.exponent);
+    let normalisation = (m + 2.0) * (m + 4.0) / (8.0 * std::f64::consts::PI * ((-m / 2.0).exp2() + m));
+    let albedo = material.lambert.as_dvec3() + material.glossy.as_dvec3();
+    layout::Material {
+        ambient: vec4(material.ambient, normalisation),
+        lambert: vec4(material.lambert, albedo.max_element().min(MAX_SURVIVAL)),
+        glossy: vec4(material.glossy, m),
+        emission: vec4(material.emission, 0.0),
+    }
+}
+
+fn luminaire(scene: &Scene, table: &LuminaireTable, index: usize) -> layout::Luminaire {
+    let (threshold, alias_index) = table.choice.slots[index];
+    let pdf = table.choice.pdf[index];
+    let entry = layout::Luminaire { threshold, alias_index, ..Default::default() };
+    match &table.entries[index] {
+        SampledLuminaire::Impulse(Luminaire::Point { position, intensity }) => {
+            layout::Luminaire { a: vec4(*position, 0.0), radiance: vec4(*intensity, pdf), kind: 0, ..entry }
+        }
+        SampledLuminaire::Impulse(Luminaire::Infinite { direction, irradiance }) => {
+            layout::Luminaire { a: vec4(-*direction, 0.0), radiance: vec4(*irradiance, pdf), kind: 1, ..entry }
+        }
+        SampledLuminaire::Area(triangle) => {
+            let [a, b, c] = triangle.vertices.map(|v| v.as_vec3());
+            layout::Luminaire {
+                a: vec4(a, 0.0),
+                b: vec4(b, triangle.area()),
+                c: vec4(c, position_error(scene, triangle)),
+                radiance: vec4(triangle.emission, pdf),
+                kind: 2,
+                ..entry
+            }
+        }
+    }
+}
+
+/// How far a point that the kernel computes on an emissive triangle can lie from the surface that rays meet, in each
+/// coordinate: rounding of the point itself, and of the transform into the object's space and back (compare
+/// `shaders/surfel.glsl`).
+fn position_error(scene: &Scene, triangle: &EmissiveTriangle) -> f64 {
+    let gamma = |n: f64| n * f64::from(f32::EPSILON) * 0.5;
+    let largest = triangle.vertices.iter().fold(DVec3::ZERO, |m, v| m.max(v.abs()));
+    let mut error = gamma(11.0) * largest;
+    let to_world = widen(scene.objects[triangle.object as usize].object_to_world);
+    if to_world != glam::DAffine3::IDENTITY {
+        let to_object = to_world.inverse();
+        let absolute = |m: DMat3| DMat3::from_cols(m.x_axis.abs(), m.y_axis.abs(), m.z_axis.abs());
+        let back = absolute(to_object.matrix3) * largest + to_object.translation.abs();
+        error += gamma(8.0) * (absolute(to_world.matrix3) * back + to_world.translation.abs());
+    }
+    error.max_element()
+}
