@@ -15,6 +15,8 @@ readonly rust_needed=1.88
 # The first Mesa whose lavapipe has ray query in all three systems.
 readonly mesa_needed=25.0
 readonly old_driver=target/drivers/mesa-22.3.6
+# Quiet; a new machine may still be at its own updates, so wait for its lock.
+readonly apt_options="-qq -o DPkg::Lock::Timeout=300 -o Dpkg::Use-Pty=0"
 readonly backports=/etc/apt/sources.list.d/luminaire-backports.sources
 
 say() { printf 'set-up: %s\n' "$*"; }
@@ -72,15 +74,16 @@ install() {
     say "will now run, as root:"
     printf '%s\n' "$commands"
     export DEBIAN_FRONTEND=noninteractive
-    as_root apt-get update -qq || fail "apt-get update failed; see above"
+    as_root apt-get $apt_options update || fail "apt-get update failed; see above"
     if [ $with_backports = yes ]; then
         local uri
         uri=$(archive_of bookworm)
         [ -n "$uri" ] || fail "apt has no source for the release bookworm, so there is none for bookworm-backports"
         backports_source "$uri" | as_root tee "$backports" >/dev/null
-        as_root apt-get update -qq || fail "apt-get update failed; see above, and $backports"
+        as_root apt-get $apt_options update || fail "apt-get update failed; see above, and $backports"
     fi
-    as_root apt-get install -y -qq --no-install-recommends "$@" || fail "apt-get install failed; see above"
+    say "installing; this may take a minute"
+    as_root apt-get $apt_options install -y --no-install-recommends "$@" >/dev/null || fail "apt-get install failed; see above"
 }
 
 # The packages of the list that are not installed.
@@ -142,7 +145,7 @@ old_driver() {
     say "unpacking mesa-vulkan-drivers $version under $old_driver (it is not installed)"
     rm -rf $old_driver && mkdir -p $old_driver
     folder=$(mktemp -d)
-    if ! (cd "$folder" && apt-get download -qq "mesa-vulkan-drivers=$version") || ! dpkg -x "$folder"/*.deb $old_driver; then
+    if ! (cd "$folder" && apt-get -qq -o APT::Sandbox::User=root download "mesa-vulkan-drivers=$version") || ! dpkg -x "$folder"/*.deb $old_driver; then
         say "SKIP: Mesa $version cannot be downloaded; tests on it will be skipped"
         rm -rf "$folder" $old_driver
         return
@@ -169,7 +172,7 @@ for_tests() {
         return
     fi
     local packages
-    mapfile -t packages < <(lavapipe_packages && missing glslc vulkan-validationlayers "$@")
+    mapfile -t packages < <(lavapipe_packages; missing glslc vulkan-validationlayers "$@")
     if [ ${#packages[@]} != 0 ]; then install "${packages[@]}"; fi
     old_driver
 }
@@ -177,7 +180,10 @@ for_tests() {
 case "${1:-}" in
 build) build ;;
 vulkan) vulkan ;;
-test) build && for_tests ;;
+test)
+    build
+    for_tests
+    ;;
 ci)
     build
     if python3 -m pip --version >/dev/null 2>&1; then for_tests; else for_tests python3-pip; fi
