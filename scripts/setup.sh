@@ -69,7 +69,7 @@ install() {
     commands="$commands
   apt-get install --no-install-recommends $*"
     if ! may_be_root; then
-        fail "these packages are missing: $*" "run this as root, then try again:" "$commands"
+        fail "these packages are missing: $*" "run this as root, then try again:"$'\n'"$commands"
     fi
     say "will now run, as root:"
     printf '%s\n' "$commands"
