@@ -6,10 +6,14 @@
 
 mod load;
 mod luminaire;
+mod material;
 mod mtl;
 mod obj;
+mod obj_text;
 mod preview;
+mod text;
 mod toml;
+mod toml_values;
 
 pub use load::load;
 pub use luminaire::{EmissiveTriangle, LuminaireTable, SampledLuminaire};
@@ -217,8 +221,6 @@ impl Scene {
 impl Mesh {
     /// Object-space bounding box of the positions.
     pub fn bounds(&self) -> (Vec3, Vec3) {
-        self.positions
-            .iter()
-            .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)))
+        self.positions.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)))
     }
 }
