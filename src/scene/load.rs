@@ -1,13 +1,229 @@
 //! From a path to a [`Scene`].
 
-use super::Scene;
+use super::material::Draft;
+use super::{Material, Mesh, Object, Scene, mtl, obj, preview, toml};
 use crate::{Error, Result};
-use std::path::Path;
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
 
-/// Loads a scene file, or any OBJ.
+/// World coordinates beyond this are refused: their squares would leave the range of `f32`.
+const LARGEST_COORDINATE: f64 = 1e18;
+
+/// Loads a scene file (`.toml`), or any OBJ (`.obj`), which then gets a camera and, if nothing in it emits, a light.
 ///
 /// # Errors
-/// If a file cannot be read or is wrong; the error names file and line.
+/// [`Error::Usage`] for another ending; otherwise if a file cannot be read or is wrong, with file and line.
 pub fn load(path: &Path) -> Result<Scene> {
-    Err(Error::scene(path, "not loaded yet"))
+    let ending = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+    let scene = match ending.as_str() {
+        "toml" => toml::load(path)?,
+        "obj" => preview::load(path)?,
+        _ => {
+            return Err(Error::Usage(format!(
+                "{}: not a scene; expected a scene file ending in .toml or a mesh ending in .obj",
+                path.display()
+            )));
+        }
+    };
+    let (low, high) = scene.world_bounds();
+    let largest = low.abs().max(high.abs()).max_element();
+    if largest > LARGEST_COORDINATE {
+        let message = format!("a coordinate of {largest:e} is too large; scale the scene to stay within 1e18");
+        return Err(Error::scene(path, message));
+    }
+    Ok(scene)
+}
+
+/// The meshes and materials loaded so far; each file is read once.
+#[derive(Debug)]
+pub(super) struct Loader {
+    /// Loaded meshes.
+    pub meshes: Vec<Mesh>,
+    /// What was guessed, dropped or scaled.
+    pub warnings: Vec<String>,
+    /// Materials as far as they are known; number 0 is the fallback, "default".
+    drafts: Vec<Draft>,
+    /// What the scene file says about materials, by name.
+    overrides: Vec<Draft>,
+    /// Materials that only the scene file defines.
+    defined: HashMap<String, u32>,
+    /// For each mesh, the materials of its MTL files by name.
+    named: Vec<HashMap<String, u32>>,
+    mesh_files: HashMap<PathBuf, u32>,
+    libraries: HashMap<PathBuf, HashMap<String, u32>>,
+}
+
+impl Loader {
+    /// Starts with the materials of a scene file.
+    pub(super) fn new(overrides: Vec<Draft>) -> Self {
+        Loader {
+            meshes: Vec::new(),
+            warnings: Vec::new(),
+            drafts: vec![Draft::named("default")],
+            overrides,
+            defined: HashMap::new(),
+            named: Vec::new(),
+            mesh_files: HashMap::new(),
+            libraries: HashMap::new(),
+        }
+    }
+
+    /// The mesh of an OBJ file with its MTL files; the same file is loaded once.
+    ///
+    /// # Errors
+    /// If the OBJ cannot be read or is wrong. A missing or wrong MTL file is a warning.
+    pub(super) fn mesh(&mut self, path: &Path) -> Result<u32> {
+        let identity = identity(path);
+        if let Some(mesh) = self.mesh_files.get(&identity) {
+            return Ok(*mesh);
+        }
+        let obj::Obj { mut mesh, materials, libraries, warnings } = obj::read(path)?;
+        self.warnings.extend(warnings);
+        let mut named = HashMap::new();
+        for (names, line) in &libraries {
+            self.library_line(path, *line, names, &mut named);
+        }
+        let mut missing = Vec::new();
+        // Entry 0 is for triangles before the first usemtl.
+        let mut material_of = vec![0];
+        for (name, line) in &materials {
+            let index = named.get(name).copied().or_else(|| self.define(name));
+            if index.is_none() {
+                missing.push((name, *line));
+            }
+            material_of.push(index.unwrap_or(0));
+        }
+        if let Some((_, line)) = missing.first() {
+            let names: Vec<String> = missing.iter().take(8).map(|(name, _)| format!("`{name}`")).collect();
+            let more = if missing.len() > names.len() {
+                format!(" and {} more", missing.len() - names.len())
+            } else {
+                String::new()
+            };
+            self.warnings.push(format!(
+                "{}:{line}: no MTL file defines {}{more}; the material `default` is used",
+                path.display(),
+                names.join(", ")
+            ));
+        }
+        for triangle in &mut mesh.triangles {
+            triangle.material = material_of[triangle.material as usize];
+        }
+        let index = self.meshes.len() as u32;
+        self.meshes.push(mesh);
+        self.named.push(named);
+        self.mesh_files.insert(identity, index);
+        Ok(index)
+    }
+
+    /// The material that an object of `mesh` means by `name`: one of its own MTL files, else of any, else of the scene file.
+    pub(super) fn material(&mut self, mesh: u32, name: &str) -> Option<u32> {
+        let own = self.named[mesh as usize].get(name).copied();
+        let any = || self.drafts.iter().position(|draft| draft.name == name).map(|index| index as u32);
+        own.or_else(any).or_else(|| self.define(name))
+    }
+
+    /// Applies the scene file's materials and fills in every default. Only materials that some triangle of `objects` shows
+    /// are worth a warning.
+    pub(super) fn finish_materials(&mut self, objects: &[Object]) -> Vec<Material> {
+        for change in &self.overrides {
+            let mut known = false;
+            for draft in self.drafts.iter_mut().filter(|draft| draft.name == change.name) {
+                draft.overlay(change);
+                known = true;
+            }
+            if !known {
+                self.warnings.push(format!("the material `{}` of the scene file is not used by anything", change.name));
+            }
+        }
+        let mut shown = vec![false; self.drafts.len()];
+        for object in objects {
+            match object.material {
+                Some(material) => shown[material as usize] = true,
+                None => {
+                    let triangles = &self.meshes[object.mesh as usize].triangles;
+                    triangles.iter().for_each(|triangle| shown[triangle.material as usize] = true);
+                }
+            }
+        }
+        let mut materials = Vec::new();
+        for (draft, shown) in self.drafts.iter().zip(shown) {
+            let mut warnings = Vec::new();
+            materials.push(draft.finish(&mut warnings));
+            if shown {
+                self.warnings.append(&mut warnings);
+            }
+        }
+        materials
+    }
+
+    /// A new material, if the scene file has one of this name; the same one the next time.
+    fn define(&mut self, name: &str) -> Option<u32> {
+        if let Some(index) = self.defined.get(name) {
+            return Some(*index);
+        }
+        self.overrides.iter().any(|draft| draft.name == name).then(|| {
+            let index = self.drafts.len() as u32;
+            self.drafts.push(Draft::named(name));
+            self.defined.insert(name.to_owned(), index);
+            index
+        })
+    }
+
+    /// Reads what one `mtllib` line names.
+    fn library_line(&mut self, obj: &Path, line: usize, names: &str, named: &mut HashMap<String, u32>) {
+        let folder = obj.parent().unwrap_or(Path::new(""));
+        for name in library_names(folder, names) {
+            match self.library(&folder.join(&name)) {
+                Ok(materials) => named.extend(materials),
+                Err(error) => self.warnings.push(format!("{}:{line}: {error}", obj.display())),
+            }
+        }
+    }
+
+    /// Name and index of each material of an MTL file.
+    fn library(&mut self, path: &Path) -> Result<HashMap<String, u32>> {
+        let identity = identity(path);
+        if let Some(materials) = self.libraries.get(&identity) {
+            return Ok(materials.clone());
+        }
+        let mut materials = HashMap::new();
+        for draft in mtl::read(path, &mut self.warnings)? {
+            materials.insert(draft.name.clone(), self.drafts.len() as u32);
+            self.drafts.push(draft);
+        }
+        self.libraries.insert(identity, materials.clone());
+        Ok(materials)
+    }
+}
+
+/// One name for one file, however the path is spelled.
+fn identity(path: &Path) -> PathBuf {
+    path.canonicalize().unwrap_or_else(|_| path.to_owned())
+}
+
+/// The file names on an `mtllib` line. Names may hold blanks and a line may hold several names, so the whole line is tried
+/// first, then the pieces that end in `.mtl`; backslashes are separators, or stand before a blank that belongs to the name.
+fn library_names(folder: &Path, line: &str) -> Vec<String> {
+    let plain = |name: &str| name.replace("\\ ", " ").replace('\\', "/");
+    let readable = |name: &str| if folder.join(name).is_file() { name.to_owned() } else { plain(name) };
+    let whole = readable(line);
+    if folder.join(&whole).is_file() {
+        return vec![whole];
+    }
+    let mut names = Vec::new();
+    let mut name = String::new();
+    for word in line.split_whitespace() {
+        if !name.is_empty() {
+            name.push(' ');
+        }
+        name.push_str(word);
+        if word.to_ascii_lowercase().ends_with(".mtl") {
+            names.push(readable(&std::mem::take(&mut name)));
+        }
+    }
+    if !name.is_empty() {
+        names.push(readable(&name));
+    }
+    names
 }

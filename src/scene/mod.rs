@@ -6,10 +6,14 @@
 
 mod load;
 mod luminaire;
+mod material;
 mod mtl;
 mod obj;
+mod obj_text;
 mod preview;
+mod text;
 mod toml;
+mod toml_values;
 
 pub use load::load;
 pub(crate) use luminaire::widen;

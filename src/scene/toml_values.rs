@@ -1,0 +1,117 @@
+//! Numbers of a scene file that are checked as they are read, so that an error points at the very value.
+
+use glam::{DVec3, Vec3};
+use serde::Deserialize;
+
+/// Most pixels in a row or a column.
+const LARGEST_FILM: i64 = 65_536;
+/// Most stops of exposure, up or down: more would leave the range of `f32`.
+const LARGEST_EXPOSURE: f64 = 64.0;
+
+type Checked<T> = std::result::Result<T, &'static str>;
+
+/// A finite number.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(try_from = "f64")]
+pub(super) struct Finite(pub f32);
+
+/// A point or a vector.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(try_from = "[f64; 3]")]
+pub(super) struct Triple(pub Vec3);
+
+/// Linear RGB, not negative.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(try_from = "[f64; 3]")]
+pub(super) struct Colour(pub Vec3);
+
+/// A field of view in degrees.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(try_from = "f64")]
+pub(super) struct Fov(pub f32);
+
+/// A Blinn-Phong exponent.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(try_from = "f64")]
+pub(super) struct Exponent(pub f32);
+
+/// Stops.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(try_from = "f64")]
+pub(super) struct Exposure(pub f32);
+
+/// Width or height of a film.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(try_from = "i64")]
+pub(super) struct Pixels(pub u32);
+
+/// Samples a pixel.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(try_from = "i64")]
+pub(super) struct Samples(pub u32);
+
+impl TryFrom<f64> for Finite {
+    type Error = &'static str;
+    fn try_from(number: f64) -> Checked<Self> {
+        Some(number as f32).filter(|n| n.is_finite()).map(Finite).ok_or("expected a finite number below 3e38")
+    }
+}
+
+impl TryFrom<[f64; 3]> for Triple {
+    type Error = &'static str;
+    fn try_from(numbers: [f64; 3]) -> Checked<Self> {
+        let vector = DVec3::from(numbers).as_vec3();
+        Some(vector).filter(|v| v.is_finite()).map(Triple).ok_or("expected three finite numbers below 3e38")
+    }
+}
+
+impl TryFrom<[f64; 3]> for Colour {
+    type Error = &'static str;
+    fn try_from(numbers: [f64; 3]) -> Checked<Self> {
+        let colour = DVec3::from(numbers).as_vec3();
+        Some(colour)
+            .filter(|c| c.is_finite() && c.min_element() >= 0.0)
+            .map(Colour)
+            .ok_or("expected linear RGB: three finite numbers, none of them negative")
+    }
+}
+
+impl TryFrom<f64> for Fov {
+    type Error = &'static str;
+    fn try_from(degrees: f64) -> Checked<Self> {
+        let fov = degrees as f32;
+        (fov > 0.0 && fov < 180.0).then_some(Fov(fov)).ok_or("expected degrees between 0 and 180, both excluded")
+    }
+}
+
+impl TryFrom<f64> for Exponent {
+    type Error = &'static str;
+    fn try_from(number: f64) -> Checked<Self> {
+        let exponent = number as f32;
+        (exponent.is_finite() && exponent >= 0.0)
+            .then_some(Exponent(exponent))
+            .ok_or("expected a finite number of at least 0")
+    }
+}
+
+impl TryFrom<f64> for Exposure {
+    type Error = &'static str;
+    fn try_from(stops: f64) -> Checked<Self> {
+        (stops.abs() <= LARGEST_EXPOSURE).then_some(Exposure(stops as f32)).ok_or("expected stops from -64 to 64")
+    }
+}
+
+impl TryFrom<i64> for Pixels {
+    type Error = &'static str;
+    fn try_from(pixels: i64) -> Checked<Self> {
+        (1..=LARGEST_FILM).contains(&pixels).then_some(Pixels(pixels as u32)).ok_or("expected 1 to 65536 pixels")
+    }
+}
+
+impl TryFrom<i64> for Samples {
+    type Error = &'static str;
+    fn try_from(samples: i64) -> Checked<Self> {
+        let samples = u32::try_from(samples).ok().filter(|n| *n > 0);
+        samples.map(Samples).ok_or("expected 1 to 4294967295 samples a pixel")
+    }
+}
