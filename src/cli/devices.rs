@@ -25,7 +25,7 @@ pub fn run() -> Result<ExitCode> {
             return Ok(ExitCode::FAILURE);
         }
     };
-    print(&report(&devices));
+    print(&report(&devices))?;
     if devices.iter().any(|device| device.backend.is_ok()) {
         return Ok(ExitCode::SUCCESS);
     }

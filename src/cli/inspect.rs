@@ -9,7 +9,7 @@ use std::process::ExitCode;
 
 /// Loads a scene and prints what is in it.
 pub fn run(path: &Path) -> Result<ExitCode> {
-    print(&describe(&scene::load(path)?));
+    print(&describe(&scene::load(path)?))?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -6,6 +6,7 @@ mod progress;
 pub mod render;
 mod stats;
 
+use luminaire::Error;
 use luminaire::backend::Backend;
 use std::io::Write;
 use std::path::PathBuf;
@@ -85,25 +86,25 @@ pub struct RenderOptions {
     pub quiet: bool,
 
     /// Samples a pixel [default: the scene's, unless there is --time].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), help_heading = "Quality")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..), help_heading = "Quality")]
     pub spp: Option<u32>,
     /// Stop rendering after so many seconds; with --spp, whichever comes first.
-    #[arg(long, value_name = "SECONDS", value_parser = seconds, help_heading = "Quality")]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = seconds, help_heading = "Quality")]
     pub time: Option<f64>,
     /// Width in pixels [default: the scene's, or from --height at the scene's aspect ratio].
-    #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(1..=65536), help_heading = "Quality")]
+    #[arg(long, value_name = "PIXELS", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=65536), help_heading = "Quality")]
     pub width: Option<u32>,
     /// Height in pixels [default: the scene's, or from --width at the scene's aspect ratio].
-    #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(1..=65536), help_heading = "Quality")]
+    #[arg(long, value_name = "PIXELS", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=65536), help_heading = "Quality")]
     pub height: Option<u32>,
     /// Seed of the random numbers: the same seed gives the same picture [default: the scene's].
-    #[arg(long, value_name = "N", help_heading = "Quality")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, help_heading = "Quality")]
     pub seed: Option<u32>,
     /// The estimator: full light transport, or direct light and an ambient term [default: the scene's].
     #[arg(long, value_name = "NAME", help_heading = "Quality")]
     pub integrator: Option<IntegratorName>,
     /// At most so many indirect bounces; 0 is direct light alone [default: the scene's].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=1_000_000), help_heading = "Quality")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(..=1_000_000), help_heading = "Quality")]
     pub max_bounces: Option<u32>,
 
     /// What traces the rays.
@@ -168,9 +169,12 @@ pub fn tell(line: &str) {
 }
 
 /// Prints a result on stdout. A reader that closes the pipe early (`| head`) is content with less.
-fn print(text: &str) {
+fn print(text: &str) -> luminaire::Result<()> {
     let mut out = std::io::stdout().lock();
-    let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(Error::write("standard output".as_ref(), e)),
+        _ => Ok(()),
+    }
 }
 
 /// Rows with their columns aligned, each line indented by `indent` spaces.

@@ -82,7 +82,10 @@ fn finish(
         say(&format!("warning: {black} pixels have no sample and are black: the render ended during the first pass"));
     }
     let start = Instant::now();
-    written.iter().try_for_each(|path| image_io::save(path, &rendered.film, scene.settings.exposure))?;
+    // Every file is tried: one that cannot be written must not cost the others.
+    let saved: Vec<_> =
+        written.iter().map(|path| image_io::save(path, &rendered.film, scene.settings.exposure)).collect();
+    saved.into_iter().collect::<Result<()>>()?;
     seconds.write = start.elapsed().as_secs_f64();
     if let Some(path) = &options.stats {
         let stats = Stats::new(scene, opened, &rendered, seconds, written);
@@ -90,7 +93,7 @@ fn finish(
         image_io::save_text(path, &(text + "\n"))?;
     }
     if !options.quiet {
-        print(&summary(&rendered, seconds, written, options.stats.as_deref()));
+        print(&summary(&rendered, seconds, written, options.stats.as_deref()))?;
     }
     match rendered.end {
         End::Samples | End::Time => Ok(ExitCode::SUCCESS),

@@ -1,7 +1,7 @@
 //! From a path to a [`Scene`].
 
 use super::material::Draft;
-use super::{Material, Mesh, Scene, mtl, obj, preview, toml};
+use super::{Material, Mesh, Object, Scene, mtl, obj, preview, toml};
 use crate::{Error, Result};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -27,8 +27,7 @@ pub fn load(path: &Path) -> Result<Scene> {
     };
     let (low, high) = scene.world_bounds();
     let largest = low.abs().max(high.abs()).max_element();
-    // Not `>`: an infinite transform times zero gives NaN, which must not pass either.
-    if !(largest <= LARGEST_COORDINATE) {
+    if largest > LARGEST_COORDINATE {
         let message = format!("a coordinate of {largest:e} is too large; scale the scene to stay within 1e18");
         return Err(Error::scene(path, message));
     }
@@ -124,19 +123,38 @@ impl Loader {
         own.or_else(any).or_else(|| self.define(name))
     }
 
-    /// Applies the scene file's materials and fills in every default.
-    pub(super) fn finish_materials(&mut self) -> Vec<Material> {
+    /// Applies the scene file's materials and fills in every default. Only materials that some triangle of `objects` shows
+    /// are worth a warning.
+    pub(super) fn finish_materials(&mut self, objects: &[Object]) -> Vec<Material> {
         for change in &self.overrides {
-            let mut used = false;
+            let mut known = false;
             for draft in self.drafts.iter_mut().filter(|draft| draft.name == change.name) {
                 draft.overlay(change);
-                used = true;
+                known = true;
             }
-            if !used {
+            if !known {
                 self.warnings.push(format!("the material `{}` of the scene file is not used by anything", change.name));
             }
         }
-        self.drafts.iter().map(|draft| draft.finish(&mut self.warnings)).collect()
+        let mut shown = vec![false; self.drafts.len()];
+        for object in objects {
+            match object.material {
+                Some(material) => shown[material as usize] = true,
+                None => {
+                    let triangles = &self.meshes[object.mesh as usize].triangles;
+                    triangles.iter().for_each(|triangle| shown[triangle.material as usize] = true);
+                }
+            }
+        }
+        let mut materials = Vec::new();
+        for (draft, shown) in self.drafts.iter().zip(shown) {
+            let mut warnings = Vec::new();
+            materials.push(draft.finish(&mut warnings));
+            if shown {
+                self.warnings.append(&mut warnings);
+            }
+        }
+        materials
     }
 
     /// A new material, if the scene file has one of this name; the same one the next time.

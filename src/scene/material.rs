@@ -23,6 +23,8 @@ pub(super) struct Draft {
     pub exponent: Option<f32>,
     /// `Ke`.
     pub emission: Option<Vec3>,
+    /// What the MTL file asks for and nothing models, ready to be a warning.
+    pub not_modelled: Option<String>,
 }
 
 impl Draft {
@@ -31,7 +33,7 @@ impl Draft {
         Draft { name: name.to_owned(), ..Draft::default() }
     }
 
-    /// Replaces what `other` states.
+    /// Replaces the colours and the exponent that `other` states.
     pub(super) fn overlay(&mut self, other: &Draft) {
         self.ambient = other.ambient.or(self.ambient);
         self.diffuse = other.diffuse.or(self.diffuse);
@@ -46,6 +48,7 @@ impl Draft {
     /// missing ambient albedo is the diffuse one.
     pub(super) fn finish(&self, warnings: &mut Vec<String>) -> Material {
         let name = &self.name;
+        warnings.extend(self.not_modelled.clone());
         let mut glossy = self.glossy.unwrap_or(Vec3::ZERO);
         let other_colour = self.glossy.is_some() || self.emission.is_some();
         let mut lambert = self.diffuse.unwrap_or(if other_colour { Vec3::ZERO } else { DEFAULT_LAMBERT });

@@ -128,17 +128,17 @@ impl Reader<'_> {
             (None, Some(tr)) if tr > 0.0 => current.ignore(format!("Tr {tr} (transparency)")),
             _ => {}
         }
-        let name = &current.draft.name;
-        if !current.ignored.is_empty() {
-            let ignored = current.ignored.join(", ");
-            self.warnings.push(format!("{}: material `{name}`: not modelled, ignored: {ignored}", self.path.display()));
+        let Current { mut draft, ignored, .. } = current;
+        if !ignored.is_empty() {
+            let (file, name, ignored) = (self.path.display(), &draft.name, ignored.join(", "));
+            draft.not_modelled = Some(format!("{file}: material `{name}`: not modelled, ignored: {ignored}"));
         }
-        if self.drafts.iter().any(|draft| draft.name == *name) {
-            self.warnings
-                .push(format!("{}: material `{name}` is defined twice; the later one counts", self.path.display()));
-            self.drafts.retain(|draft| draft.name != *name);
+        if self.drafts.iter().any(|other| other.name == draft.name) {
+            let (file, name) = (self.path.display(), &draft.name);
+            self.warnings.push(format!("{file}: material `{name}` is defined twice; the later one counts"));
+            self.drafts.retain(|other| other.name != draft.name);
         }
-        self.drafts.push(current.draft);
+        self.drafts.push(draft);
     }
 
     /// One number for all channels, or three; none if it is wrong, which is a warning.

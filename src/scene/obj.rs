@@ -48,7 +48,7 @@ pub(super) fn read(path: &Path) -> Result<Obj> {
         return Err(Error::scene(path, format!("nothing to trace: {why}")));
     }
     if dropped > 0 {
-        warnings.push(format!("{}: {dropped} triangles of zero area are dropped", path.display()));
+        warnings.push(format!("{}: {dropped} zero-area triangle(s) dropped", path.display()));
     }
     if mesh.normals.iter().all(|normal| *normal == Vec3::ZERO) {
         mesh.normals = Vec::new();

@@ -24,12 +24,13 @@ pub(super) const FILM: FilmSettings = FilmSettings { width: 512, height: 512, fi
 pub(super) fn load(path: &Path) -> Result<Scene> {
     let mut loader = Loader::new(Vec::new());
     let mesh = loader.mesh(path)?;
-    let materials = loader.finish_materials();
     let object = Object { name: obj::file_name(path), mesh, object_to_world: Affine3A::IDENTITY, material: None };
+    let objects = vec![object];
+    let materials = loader.finish_materials(&objects);
     let mut scene = Scene {
         path: path.to_owned(),
         meshes: loader.meshes,
-        objects: vec![object],
+        objects,
         materials,
         luminaires: Vec::new(),
         sensor: Sensor { position: Vec3::Z, target: Vec3::ZERO, up: Vec3::Y, fov: FOV },

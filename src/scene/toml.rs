@@ -170,7 +170,7 @@ impl File<'_> {
         };
         let mut scene = Scene {
             path: self.path.to_owned(),
-            materials: loader.finish_materials(),
+            materials: loader.finish_materials(&objects),
             meshes: loader.meshes,
             objects,
             luminaires,
@@ -276,6 +276,7 @@ impl File<'_> {
                 glossy: table.glossy.map(|colour| colour.0),
                 exponent: table.exponent.map(|exponent| exponent.0),
                 emission: table.emission.map(|colour| colour.0),
+                not_modelled: None,
             })
         };
         tables.iter().map(draft).collect()

@@ -1,0 +1,34 @@
+# Everything that a user or a developer does, by name. scripts/setup.sh does the set-up and says what it changes.
+
+SHELL := /bin/bash
+BIN := $(or $(CARGO_TARGET_DIR),target)/release/luminaire
+OLD_DRIVER := target/drivers/mesa-22.3.6/lvp_icd.json
+
+.PHONY: help render test setup build shaders lint
+
+help: ## this list
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-9s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+
+render: setup ## render the Cornell box to out/cornell.png and out/cornell.exr, installing what is missing
+	@mkdir -p out
+	$(BIN) render scenes/cornell/cornell.toml -o out/cornell.png -o out/cornell.exr
+
+test: ## install what the tests want, then run them all
+	@scripts/setup.sh test
+	@if [ -f $(OLD_DRIVER) ]; then export LUMINAIRE_OLD_DRIVER="$$PWD/$(OLD_DRIVER)"; fi; \
+	echo cargo test --release; cargo test --release
+
+setup: build ## build, and see to a Vulkan device
+	@scripts/setup.sh vulkan
+
+build: ## build the program
+	@scripts/setup.sh build
+	cargo build --release
+
+shaders: ## compile shaders/*.comp to shaders/spirv/ again (wants glslc)
+	scripts/build-shaders.sh
+
+lint: ## format, clippy and documentation, without changing anything
+	cargo fmt --check
+	cargo clippy --release --all-targets -- -D warnings
+	RUSTDOCFLAGS="-D warnings" cargo doc --release --no-deps --document-private-items
