@@ -1,1 +1,122 @@
-//! reference
+//! The double-precision tracer: the lecture, function by function, as plain as possible. It says what is right.
+//!
+//! Everything is `f64`, starting from the scene's `f32` numbers, and every random number is the one that the kernel draws
+//! ([`crate::sampling`]). The shader function that does the same has the same name:
+//!
+//! | lecture | here |
+//! |---|---|
+//! | Surface Element Class | [`surfel`]: `Surfel`, `bsdf` |
+//! | Shadows & Attenuation, Area Luminaires | [`luminaire`]: `direct_light` |
+//! | More Efficient Integration, Extinction | [`scatter`]: `scatter`, `survival`; [`warp`] |
+//! | Intersection Problems | [`intersect`], [`surfel`]: `offset_ray_origin` |
+//! | Sensor Modelling | [`sensor`]: `sensor_ray` |
+//! | Path Trace Function, A Simple Raytracer | [`path`]: `radiance` |
+
+pub mod intersect;
+pub mod luminaire;
+pub mod path;
+pub mod scatter;
+pub mod sensor;
+pub mod surfel;
+mod tree;
+pub mod warp;
+
+use crate::Result;
+use crate::film::{Batch, PixelSum};
+use crate::render::{Traced, Tracer};
+use crate::scene::{LuminaireTable, Scene, widen};
+use glam::{DAffine3, DMat3, DVec3};
+use rayon::prelude::*;
+use tree::Trees;
+
+/// The reference tracer with its scene; seed, film size and integrator are the scene's own.
+pub struct Reference {
+    scene: Scene,
+    instances: Vec<Instance>,
+    /// None: every triangle is tested.
+    trees: Option<Trees>,
+    luminaires: LuminaireTable,
+}
+
+/// Where an object stands.
+struct Instance {
+    to_world: DAffine3,
+    to_object: DAffine3,
+    /// Inverse transpose: takes normals to world space.
+    normal_to_world: DMat3,
+}
+
+/// `n u / (1 - n u)`: bounds the relative error of `n` roundings in a row, where `u` is half an ulp of 1
+/// (Higham, "Accuracy and Stability of Numerical Algorithms", section 3.1).
+fn gamma(n: f64) -> f64 {
+    let nu = n * (0.5 * f64::EPSILON);
+    nu / (1.0 - nu)
+}
+
+impl Reference {
+    /// A tracer that finds triangles through a tree of boxes.
+    pub fn new(scene: &Scene) -> Self {
+        let mut reference = Self::brute_force(scene);
+        reference.trees = Some(Trees::new(scene, &reference.instances));
+        reference
+    }
+
+    /// A tracer that tests every triangle for every ray: the oracle for [`Reference::new`], too simple to be wrong.
+    pub fn brute_force(scene: &Scene) -> Self {
+        let instances = scene
+            .objects
+            .iter()
+            .map(|object| {
+                let to_world = widen(object.object_to_world);
+                let to_object = to_world.inverse();
+                Instance { to_world, to_object, normal_to_world: to_object.matrix3.transpose() }
+            })
+            .collect();
+        Reference { scene: scene.clone(), instances, trees: None, luminaires: LuminaireTable::new(scene) }
+    }
+
+    /// World-space corners of a triangle of an object.
+    fn corners(&self, object: u32, triangle: u32) -> [DVec3; 3] {
+        let mesh = &self.scene.meshes[self.scene.objects[object as usize].mesh as usize];
+        let to_world = &self.instances[object as usize].to_world;
+        let vertices = mesh.triangles[triangle as usize].vertices;
+        vertices.map(|v| to_world.transform_point3(mesh.positions[v as usize].as_dvec3()))
+    }
+}
+
+impl Tracer for Reference {
+    fn trace(&mut self, batch: &Batch) -> Result<Traced> {
+        let this = &*self;
+        let tile = batch.tile;
+        let pixels = tile.pixels();
+        let (sums, non_finite): (Vec<PixelSum>, Vec<u32>) = (0..pixels * batch.groups() as usize)
+            .into_par_iter()
+            .map(|index| {
+                let (group, in_tile) = ((index / pixels) as u32, (index % pixels) as u32);
+                let pixel = (tile.y + in_tile / tile.width) * this.scene.film.width + tile.x + in_tile % tile.width;
+                let start = batch.samples.start + group * batch.group;
+                let end = start.saturating_add(batch.group).min(batch.samples.end);
+                let (mut sum, mut rays, mut non_finite) = (DVec3::ZERO, 0, 0);
+                for sample in start..end {
+                    let (radiance, traced) = this.radiance(pixel, sample);
+                    rays += traced;
+                    if radiance.is_finite() {
+                        sum += radiance;
+                    } else {
+                        non_finite += 1;
+                    }
+                }
+                (PixelSum { radiance: sum.to_array(), rays }, non_finite)
+            })
+            .unzip();
+        Ok(Traced { sums, non_finite: non_finite.iter().sum(), device_seconds: None })
+    }
+
+    fn max_sums(&self) -> usize {
+        1 << 22
+    }
+
+    fn batch_seconds(&self) -> f64 {
+        0.2
+    }
+}

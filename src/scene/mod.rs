@@ -12,6 +12,7 @@ mod preview;
 mod toml;
 
 pub use load::load;
+pub(crate) use luminaire::widen;
 pub use luminaire::{EmissiveTriangle, LuminaireTable, SampledLuminaire};
 
 use glam::{Affine3A, Vec3};
@@ -217,8 +218,6 @@ impl Scene {
 impl Mesh {
     /// Object-space bounding box of the positions.
     pub fn bounds(&self) -> (Vec3, Vec3) {
-        self.positions
-            .iter()
-            .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)))
+        self.positions.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)))
     }
 }

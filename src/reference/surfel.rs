@@ -1,0 +1,129 @@
+//! The surface element: everything that shading needs to know about a point on a surface.
+
+use super::intersect::Hit;
+use super::{Reference, gamma};
+use glam::{DVec3, Vec3};
+use std::f64::consts::PI;
+
+/// A surface element, seen from the direction `wo`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Surfel {
+    /// World position.
+    pub position: DVec3,
+    /// How far `position` may be from the triangle's plane through rounding, along each axis.
+    pub position_error: DVec3,
+    /// Unit normal of the triangle, on the side of `wo`.
+    pub geometric_normal: DVec3,
+    /// Unit normal interpolated from the vertices where there are any, on the side of `geometric_normal` and of `wo`.
+    pub shading_normal: DVec3,
+    /// Emitted radiance.
+    pub emission: DVec3,
+    /// Albedo for the ambient term.
+    pub ambient: DVec3,
+    /// Diffuse albedo.
+    pub lambert: DVec3,
+    /// Glossy albedo at normal incidence.
+    pub glossy: DVec3,
+    /// Blinn-Phong exponent.
+    pub exponent: f64,
+}
+
+impl Reference {
+    /// The surfel at a hit, seen from the unit direction `wo`.
+    pub fn surfel(&self, hit: &Hit, wo: DVec3) -> Surfel {
+        let corners = self.corners(hit.object, hit.triangle);
+        let [b1, b2] = hit.barycentrics;
+        let weights = [1.0 - b1 - b2, b1, b2];
+        let position = interpolate(weights, corners);
+        // The plane is that of the corners that were hit. It equals the object-space plane under the inverse transpose.
+        let [a, b, c] = corners;
+        let geometric_normal = facing((b - a).cross(c - a).normalize_or_zero(), wo);
+
+        let object = &self.scene.objects[hit.object as usize];
+        let mesh = &self.scene.meshes[object.mesh as usize];
+        let triangle = &mesh.triangles[hit.triangle as usize];
+        let mut shading_normal = geometric_normal;
+        if !mesh.normals.is_empty() {
+            let normals = triangle.vertices.map(|v| mesh.normals[v as usize]);
+            if normals.iter().all(|n| *n != Vec3::ZERO) {
+                let n = interpolate(weights, normals.map(|n| n.as_dvec3()));
+                let n = self.instances[hit.object as usize].normal_to_world * n;
+                let n = facing(n.normalize_or_zero(), geometric_normal);
+                if n.dot(wo) > 0.0 {
+                    shading_normal = n;
+                }
+            }
+        }
+        let material = self.scene.material_of(object, triangle);
+        Surfel {
+            position,
+            position_error: position_error(corners),
+            geometric_normal,
+            shading_normal,
+            emission: material.emission.as_dvec3(),
+            ambient: material.ambient.as_dvec3(),
+            lambert: material.lambert.as_dvec3(),
+            glossy: material.glossy.as_dvec3(),
+            exponent: material.exponent.into(),
+        }
+    }
+}
+
+impl Surfel {
+    /// The scattering function without the cosine, per steradian: Lambert and normalised Blinn-Phong.
+    ///
+    /// Zero unless `wi` is above the triangle *and* above the shading normal's plane: light would leak through walls.
+    pub fn bsdf(&self, wo: DVec3, wi: DVec3) -> DVec3 {
+        if self.geometric_normal.dot(wi) <= 0.0 || self.shading_normal.dot(wi) <= 0.0 {
+            return DVec3::ZERO;
+        }
+        let mut f = self.lambert / PI;
+        if self.glossy != DVec3::ZERO {
+            let h = (wi + wo).normalize_or_zero();
+            let lobe = self.shading_normal.dot(h).max(0.0).powf(self.exponent);
+            f += self.glossy * (glossy_normalization(self.exponent) * lobe);
+        }
+        f
+    }
+
+    /// Where a ray that leaves in `direction` starts: far enough from the triangle's plane not to hit it again.
+    pub fn offset_ray_origin(&self, direction: DVec3) -> DVec3 {
+        offset_ray_origin(self.position, self.position_error, self.geometric_normal, direction)
+    }
+}
+
+/// The factor that makes the glossy lobe's directional albedo 1 at normal incidence and less elsewhere, for `m >= 0`.
+pub fn glossy_normalization(m: f64) -> f64 {
+    (m + 2.0) * (m + 4.0) / (8.0 * PI * ((-0.5 * m).exp2() + m))
+}
+
+/// Bounds the rounding error of a point `b0 a + b1 b + b2 c` of a triangle, along each axis. The weights add up to 1, so
+/// no partial sum exceeds the largest corner; it passes six roundings, and `b0 = 1 - b1 - b2` two more.
+pub(super) fn position_error(corners: [DVec3; 3]) -> DVec3 {
+    let [a, b, c] = corners.map(DVec3::abs);
+    gamma(9.0) * a.max(b).max(c)
+}
+
+/// Moves a point with a bounded error off its plane, to the side of `direction` (Pharr, Jakob and Humphreys, "Physically
+/// Based Rendering", section 6.8.6).
+pub(super) fn offset_ray_origin(position: DVec3, error: DVec3, normal: DVec3, direction: DVec3) -> DVec3 {
+    let offset = facing(normal, direction) * error.dot(normal.abs());
+    let moved = position + offset;
+    // The sum is rounded too: away from the plane.
+    let away = |axis: usize| match offset[axis] {
+        o if o > 0.0 => moved[axis].next_up(),
+        o if o < 0.0 => moved[axis].next_down(),
+        _ => moved[axis],
+    };
+    DVec3::new(away(0), away(1), away(2))
+}
+
+/// `v`, turned to the side of `side`.
+fn facing(v: DVec3, side: DVec3) -> DVec3 {
+    if v.dot(side) < 0.0 { -v } else { v }
+}
+
+/// The sum of `values`, weighted.
+pub(super) fn interpolate(weights: [f64; 3], values: [DVec3; 3]) -> DVec3 {
+    weights[0] * values[0] + weights[1] * values[1] + weights[2] * values[2]
+}
