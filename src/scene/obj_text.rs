@@ -1,7 +1,7 @@
 //! The text of an OBJ file, checked line by line and rewritten to what `tobj` reads without a quirk.
 //!
 //! `tobj` stops a whole file without naming the line, mixes up the normals of a mesh in which only some corners have one,
-//! and wants every vertex coloured if one is. So each line is checked here first, and `tobj` receives plain `v`, `vn`,
+//! takes `l` lines for faces, and wants every vertex coloured if one is. So each line is checked here first, and `tobj` receives plain `v`, `vn`,
 //! `usemtl` and `f` lines with absolute, valid indices.
 
 use super::text::Tally;
