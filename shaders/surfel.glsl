@@ -13,6 +13,8 @@ float gamma(float n) { return n * 5.9604645e-8 / (1.0 - n * 5.9604645e-8); }
 
 vec3 row_abs_dot(vec4 m[3], vec3 v) { return vec3(dot(abs(m[0].xyz), v), dot(abs(m[1].xyz), v), dot(abs(m[2].xyz), v)); }
 
+float largest(vec3 v) { return max(v.x, max(v.y, v.z)); }
+
 // Normals go by the inverse transpose.
 vec3 normal_to_world(vec4 to_object[3], vec3 n) {
     return to_object[0].xyz * n.x + to_object[1].xyz * n.y + to_object[2].xyz * n.z;
@@ -30,11 +32,13 @@ Surfel surfel(Hit hit, vec3 wo) {
     vec3 pb = w.x * b;
     vec3 pc = w.y * c;
     s.position = pa + pb + pc;
-    // Interpolation rounds by the corners' coordinates, in each axis by itself; the intersection tests shear the triangle
-    // and mix the axes, so that their distance to its plane rounds by its size.
-    vec3 size = abs(b - a) + abs(c - a);
-    s.position_error = gamma(7.0) * (abs(pa) + abs(pb) + abs(pc)) + gamma(8.0) * max(size.x, max(size.y, size.z));
     s.geometric_normal = cross(b - a, c - a);
+    // Interpolation rounds by the corners' coordinates, in each axis by itself. The intersection tests shear the triangle and
+    // mix the axes, so that their distance to its plane rounds by its size, the more the narrower it is.
+    vec3 extent = abs(b - a) + abs(c - a);
+    float size = largest(extent);
+    float narrow = min(size * size / largest(abs(s.geometric_normal)), 256.0);
+    s.position_error = gamma(7.0) * (abs(pa) + abs(pb) + abs(pc)) + gamma(4.0) * size * narrow;
     s.material = t0.w;
 
     vec3 n = vec3(0.0);
@@ -61,7 +65,8 @@ Surfel surfel(Hit hit, vec3 wo) {
         if (material != NONE) s.material = material;
     }
 
-    s.geometric_normal = normalize(s.geometric_normal);
+    // Divided first, so that the squares of a small triangle's normal do not vanish.
+    s.geometric_normal = normalize(s.geometric_normal / largest(abs(s.geometric_normal)));
     if (dot(s.geometric_normal, wo) < 0.0) s.geometric_normal = -s.geometric_normal;
     s.shading_normal = s.geometric_normal;
     if (VERTEX_NORMALS && n != vec3(0.0)) {

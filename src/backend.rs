@@ -118,7 +118,9 @@ fn open_reference(scene: &Scene, why: String, notice: bool) -> Opened {
 fn preferred(device: &PhysicalDevice) -> (Backend, &'static str) {
     match (device.ray_query, device.is_software()) {
         (true, false) => (Backend::RayQuery, "the GPU offers ray queries"),
-        (true, true) => (Backend::ComputeBvh, "a software device, on which our BVH is faster than the driver's ray queries"),
+        (true, true) => {
+            (Backend::ComputeBvh, "a software device, on which our BVH is faster than the driver's ray queries")
+        }
         (false, _) => (Backend::ComputeBvh, "the device offers no ray queries"),
     }
 }
@@ -159,7 +161,8 @@ fn choose<'a>(devices: &'a [PhysicalDevice], request: &Request) -> Result<(&'a P
     };
     device.usable().map_err(|reason| Error::NoDevice(format!("{} cannot be used: {reason}", device.name)))?;
     if wants_ray_query && !device.ray_query {
-        let advice = if device.ray_tracing_pipeline { " (it has ray-tracing pipelines, but those are not used)" } else { "" };
+        let advice =
+            if device.ray_tracing_pipeline { " (it has ray-tracing pipelines, but those are not used)" } else { "" };
         return Err(Error::NoDevice(format!(
             "{} offers no ray queries{advice}: use --backend compute-bvh, which needs none, or another --device",
             device.name

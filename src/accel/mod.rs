@@ -61,8 +61,11 @@ impl Geometry {
             .meshes
             .iter()
             .map(|mesh| {
-                let centroids: Vec<Vec3> =
-                    mesh.triangles.iter().map(|t| t.vertices.iter().map(|v| mesh.positions[*v as usize]).sum()).collect();
+                let centroids: Vec<Vec3> = mesh
+                    .triangles
+                    .iter()
+                    .map(|t| t.vertices.iter().map(|v| mesh.positions[*v as usize]).sum())
+                    .collect();
                 let order = spatial_order(&centroids);
                 let mesh = MeshBvh { root: 0, triangle_offset, order };
                 triangle_offset += mesh.order.len() as u32;

@@ -37,7 +37,13 @@ impl TopLevel {
     ) -> Result<Self> {
         // 24 bits hold the object's index in an instance.
         let most_objects = device.max_instances.min(1 << 24);
-        check(device, "the top-level acceleration structure", objects.len() as u64, most_objects, "objects (maxInstanceCount)")?;
+        check(
+            device,
+            "the top-level acceleration structure",
+            objects.len() as u64,
+            most_objects,
+            "objects (maxInstanceCount)",
+        )?;
         let mut bottom = Vec::with_capacity(meshes.len());
         for (mesh, place) in scene.meshes.iter().zip(meshes) {
             let count = place.order.len() as u64;
@@ -137,8 +143,7 @@ impl Structure {
         }
         let usage =
             vk::BufferUsageFlags::ACCELERATION_STRUCTURE_STORAGE_KHR | vk::BufferUsageFlags::SHADER_DEVICE_ADDRESS;
-        let buffer =
-            Buffer::new(device, name, sizes.acceleration_structure_size, usage, MemoryLocation::GpuOnly)?;
+        let buffer = Buffer::new(device, name, sizes.acceleration_structure_size, usage, MemoryLocation::GpuOnly)?;
         let create = vk::AccelerationStructureCreateInfoKHR::default()
             .buffer(buffer.raw)
             .size(sizes.acceleration_structure_size)

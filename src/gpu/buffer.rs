@@ -165,7 +165,8 @@ impl TexelBuffer {
             .format(vk::Format::R32G32B32A32_UINT)
             .range(vk::WHOLE_SIZE);
         // SAFETY: the buffer is alive and allows texel views; every device supports the format for them.
-        let view = unsafe { device.raw.create_buffer_view(&info, None) }.map_err(|e| device.error("vkCreateBufferView", e))?;
+        let view =
+            unsafe { device.raw.create_buffer_view(&info, None) }.map_err(|e| device.error("vkCreateBufferView", e))?;
         device.set_name(view, name);
         Ok(TexelBuffer { view, buffer })
     }

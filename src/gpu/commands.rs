@@ -33,22 +33,18 @@ impl Drop for Submission<'_> {
 /// Records commands, submits them and waits; returns the seconds that the device worked by its own clock, if it has one.
 pub(crate) fn submit(device: &Arc<Device>, name: &str, record: impl FnOnce(vk::CommandBuffer)) -> Result<Option<f64>> {
     let raw = &device.raw;
-    let mut submission = Submission {
-        device,
-        pool: vk::CommandPool::null(),
-        fence: vk::Fence::null(),
-        queries: vk::QueryPool::null(),
-    };
+    let mut submission =
+        Submission { device, pool: vk::CommandPool::null(), fence: vk::Fence::null(), queries: vk::QueryPool::null() };
     let pool_info = vk::CommandPoolCreateInfo::default()
         .queue_family_index(device.queue_family)
         .flags(vk::CommandPoolCreateFlags::TRANSIENT);
     // SAFETY (all below): every handle is from this device and alive; the structures live until their call returns; the
     // command buffer is recorded once, submitted once, and the fence is waited for before anything is freed.
     unsafe {
-        submission.pool = raw.create_command_pool(&pool_info, None).map_err(|e| device.error("vkCreateCommandPool", e))?;
+        submission.pool =
+            raw.create_command_pool(&pool_info, None).map_err(|e| device.error("vkCreateCommandPool", e))?;
         device.set_name(submission.pool, name);
-        submission.fence =
-            raw.create_fence(&Default::default(), None).map_err(|e| device.error("vkCreateFence", e))?;
+        submission.fence = raw.create_fence(&Default::default(), None).map_err(|e| device.error("vkCreateFence", e))?;
         device.set_name(submission.fence, name);
         if device.timestamps {
             let query_info = vk::QueryPoolCreateInfo::default().query_type(vk::QueryType::TIMESTAMP).query_count(2);

@@ -49,7 +49,8 @@ impl Device {
         let queue_family = physical.queue_family.expect("usable() saw it");
 
         let priorities = [1.0];
-        let queues = [vk::DeviceQueueCreateInfo::default().queue_family_index(queue_family).queue_priorities(&priorities)];
+        let queues =
+            [vk::DeviceQueueCreateInfo::default().queue_family_index(queue_family).queue_priorities(&priorities)];
         let mut features_12 = vk::PhysicalDeviceVulkan12Features::default().buffer_device_address(ray_query);
         let mut features_structure =
             vk::PhysicalDeviceAccelerationStructureFeaturesKHR::default().acceleration_structure(true);
@@ -68,7 +69,8 @@ impl Device {
         }
         let instance = &physical.instance;
         // SAFETY: `info` lives until the call returns; the physical device reported every extension and feature asked for.
-        let raw = unsafe { instance.raw.create_device(physical.raw, &info, None) }.map_err(|e| failed("vkCreateDevice", e))?;
+        let raw = unsafe { instance.raw.create_device(physical.raw, &info, None) }
+            .map_err(|e| failed("vkCreateDevice", e))?;
         let allocator = Allocator::new(&AllocatorCreateDesc {
             instance: instance.raw.clone(),
             device: raw.clone(),

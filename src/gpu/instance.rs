@@ -74,20 +74,22 @@ impl Instance {
             device: "the Vulkan loader".into(),
             reason: match result {
                 vk::Result::ERROR_INCOMPATIBLE_DRIVER => {
-                    "no driver is installed (or VK_DRIVER_FILES names none); run with --backend cpu or install one".into()
+                    "no driver is installed (or VK_DRIVER_FILES names none); run with --backend cpu or install one"
+                        .into()
                 }
                 other => other.to_string(),
             },
         };
         // SAFETY (these three): the entry points were just loaded; no pointer is passed.
-        let version = unsafe { entry.try_enumerate_instance_version() }.map_err(|e| failed("vkEnumerateInstanceVersion", e))?;
+        let version =
+            unsafe { entry.try_enumerate_instance_version() }.map_err(|e| failed("vkEnumerateInstanceVersion", e))?;
         if version.unwrap_or(vk::API_VERSION_1_0) < API_VERSION {
             return Err(Error::NoDevice("the Vulkan loader is older than Vulkan 1.2: update it".into()));
         }
         let extensions = unsafe { entry.enumerate_instance_extension_properties(None) }
             .map_err(|e| failed("vkEnumerateInstanceExtensionProperties", e))?;
-        let layers =
-            unsafe { entry.enumerate_instance_layer_properties() }.map_err(|e| failed("vkEnumerateInstanceLayerProperties", e))?;
+        let layers = unsafe { entry.enumerate_instance_layer_properties() }
+            .map_err(|e| failed("vkEnumerateInstanceLayerProperties", e))?;
 
         let validation = std::env::var_os("LUMINAIRE_VALIDATION").is_some_and(|v| v == "1");
         if validation && !layers.iter().any(|l| l.layer_name_as_c_str() == Ok(VALIDATION_LAYER)) {
@@ -190,7 +192,11 @@ impl Instance {
             } else {
                 format!("driver version {:#x}", plain.driver_version)
             },
-            api_version: (vk::api_version_major(version), vk::api_version_minor(version), vk::api_version_patch(version)),
+            api_version: (
+                vk::api_version_major(version),
+                vk::api_version_minor(version),
+                vk::api_version_patch(version),
+            ),
             device_type: plain.device_type,
             ray_query: structure_extension
                 && has_structure.acceleration_structure == vk::TRUE
@@ -205,7 +211,8 @@ impl Instance {
                 .max()
                 .unwrap_or(0),
             queue_family: queue_family.map(|f| f as u32),
-            timestamps: queue_family.is_some_and(|f| families[f].timestamp_valid_bits > 0) && limits.timestamp_period > 0.0,
+            timestamps: queue_family.is_some_and(|f| families[f].timestamp_valid_bits > 0)
+                && limits.timestamp_period > 0.0,
             limits,
             scratch_alignment: u64::from(structures.min_acceleration_structure_scratch_offset_alignment).max(1),
             max_instances: structures.max_instance_count,
@@ -273,9 +280,7 @@ impl PhysicalDevice {
 fn messenger_info() -> vk::DebugUtilsMessengerCreateInfoEXT<'static> {
     vk::DebugUtilsMessengerCreateInfoEXT::default()
         .message_severity(vk::DebugUtilsMessageSeverityFlagsEXT::WARNING | vk::DebugUtilsMessageSeverityFlagsEXT::ERROR)
-        .message_type(
-            vk::DebugUtilsMessageTypeFlagsEXT::VALIDATION | vk::DebugUtilsMessageTypeFlagsEXT::PERFORMANCE,
-        )
+        .message_type(vk::DebugUtilsMessageTypeFlagsEXT::VALIDATION | vk::DebugUtilsMessageTypeFlagsEXT::PERFORMANCE)
         .pfn_user_callback(Some(on_message))
 }
 

@@ -74,10 +74,8 @@ impl Kernel {
                     .stage_flags(vk::ShaderStageFlags::COMPUTE)
             })
             .collect();
-        let sizes: Vec<_> = bindings
-            .iter()
-            .map(|b| vk::DescriptorPoolSize { ty: b.descriptor_type(), descriptor_count: 1 })
-            .collect();
+        let sizes: Vec<_> =
+            bindings.iter().map(|b| vk::DescriptorPoolSize { ty: b.descriptor_type(), descriptor_count: 1 }).collect();
         let set_layout_info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&layout_bindings);
         let pool_info = vk::DescriptorPoolCreateInfo::default().max_sets(1).pool_sizes(&sizes);
         // SAFETY (all below): every handle is from this device and stored in `kernel` as soon as it exists, so that `drop`
@@ -98,11 +96,13 @@ impl Kernel {
             device.set_name(kernel.set, name);
             kernel.write_bindings(bindings);
 
-            let push = [vk::PushConstantRange { stage_flags: vk::ShaderStageFlags::COMPUTE, offset: 0, size: push_size }];
+            let push =
+                [vk::PushConstantRange { stage_flags: vk::ShaderStageFlags::COMPUTE, offset: 0, size: push_size }];
             let layout_info =
                 vk::PipelineLayoutCreateInfo::default().set_layouts(&set_layouts).push_constant_ranges(&push);
-            kernel.layout =
-                raw.create_pipeline_layout(&layout_info, None).map_err(|e| device.error("vkCreatePipelineLayout", e))?;
+            kernel.layout = raw
+                .create_pipeline_layout(&layout_info, None)
+                .map_err(|e| device.error("vkCreatePipelineLayout", e))?;
             device.set_name(kernel.layout, name);
 
             let module_info = vk::ShaderModuleCreateInfo::default().code(&code);

@@ -24,7 +24,8 @@ pub fn cosine_hemisphere(normal: DVec3, u: f64, v: f64) -> DVec3 {
 /// Two unit vectors that form a right-handed frame with the unit vector `n`: Duff et al., "Building an Orthonormal Basis,
 /// Revisited", JCGT 6(1), 2017.
 pub fn frame(n: DVec3) -> (DVec3, DVec3) {
-    let sign = 1f64.copysign(n.z);
+    // Zero of either sign counts as positive, as in the shader.
+    let sign = if n.z >= 0.0 { 1.0 } else { -1.0 };
     let a = -1.0 / (sign + n.z);
     let b = n.x * n.y * a;
     (DVec3::new(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x), DVec3::new(b, sign + n.y * n.y * a, -n.y))

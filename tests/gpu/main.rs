@@ -1,0 +1,76 @@
+//! The kernel against the reference, on both intersectors, on whatever Vulkan device is here.
+//!
+//! Without a device (or without ray query) a test says SKIP on standard error; with `LUMINAIRE_REQUIRE_GPU=1` it fails.
+//! With `LUMINAIRE_VALIDATION=1` every Vulkan call is watched, and a single message fails the test.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod fallback;
+mod functions;
+mod intersection;
+mod pictures;
+
+use luminaire::gpu::{Device, GpuTracer, Instance, validation_messages};
+use luminaire::scene::Scene;
+use std::io::Write;
+use std::sync::Arc;
+
+/// Set in the process that runs these tests on a driver without ray query.
+const WITHOUT_RAY_QUERY: &str = "LUMINAIRE_TEST_WITHOUT_RAY_QUERY";
+
+/// An open device and the intersector to use on it.
+#[derive(Clone)]
+struct Backend {
+    device: Arc<Device>,
+    ray_query: bool,
+}
+
+impl Backend {
+    fn name(&self) -> &'static str {
+        if self.ray_query { "ray query" } else { "compute BVH" }
+    }
+
+    fn tracer(&self, scene: &Scene) -> GpuTracer {
+        GpuTracer::new(&self.device, scene, self.ray_query).expect("the scene fits the device")
+    }
+}
+
+/// Says that something was not tested, past the capture of the test harness; fails where everything must be tested.
+fn skip(what: &str) {
+    assert!(std::env::var_os("LUMINAIRE_REQUIRE_GPU").is_none_or(|v| v != "1"), "LUMINAIRE_REQUIRE_GPU=1, but {what}");
+    let _ = writeln!(std::io::stderr(), "SKIP: {what}");
+}
+
+/// The intersectors that can run here; none without a device.
+fn backends() -> Vec<Backend> {
+    let devices = match Instance::new().and_then(|instance| instance.devices()) {
+        Ok(devices) => devices,
+        Err(e) => {
+            skip(&format!("nothing ran on Vulkan: {e}"));
+            return Vec::new();
+        }
+    };
+    let Some(device) = devices.iter().find(|d| d.usable().is_ok()) else {
+        skip("no Vulkan device is usable");
+        return Vec::new();
+    };
+    let open = |ray_query| Backend { device: Device::open(device, ray_query).expect("the device opens"), ray_query };
+    let mut backends = vec![open(false)];
+    if std::env::var_os(WITHOUT_RAY_QUERY).is_some() {
+        assert!(!device.ray_query, "{} was said to have no ray query", device.driver);
+    } else if device.ray_query {
+        backends.push(open(true));
+    } else {
+        skip(&format!("{} has no ray query; only the compute BVH was tested", device.name));
+    }
+    backends
+}
+
+/// Runs a test on every intersector, and sees that Vulkan had nothing to complain about.
+fn on_every_backend(test: impl Fn(&Backend)) {
+    for backend in backends() {
+        test(&backend);
+    }
+    assert_eq!(validation_messages(), 0, "the validation layer complained; see above");
+}

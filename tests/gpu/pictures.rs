@@ -1,0 +1,218 @@
+//! Whole pictures: the kernel against the reference and against closed forms, and the two intersectors against each other.
+
+use super::*;
+use crate::common::scenes::*;
+use crate::common::statistics::*;
+use glam::{Affine3A, DVec3, Vec3};
+use luminaire::film::{Batch, Tile};
+use luminaire::reference::Reference;
+use luminaire::render::Tracer;
+use luminaire::scene::{Integrator, Luminaire, Material, Scene};
+
+/// Mean of every pixel over samples 0 to `samples`.
+fn pixels(tracer: &mut dyn Tracer, scene: &Scene, samples: u32) -> Vec<DVec3> {
+    let tile = Tile { x: 0, y: 0, width: scene.film.width, height: scene.film.height };
+    let traced = tracer.trace(&Batch { tile, samples: 0..samples, group: samples }).expect("the tracer works");
+    assert_eq!(traced.non_finite, 0);
+    traced.sums.iter().map(|s| DVec3::from(s.radiance) / f64::from(samples)).collect()
+}
+
+/// How many pixels of two pictures differ by more than `tolerance` of the brighter one (or of a hundredth of the mean).
+fn differing(a: &[DVec3], b: &[DVec3], tolerance: f64) -> usize {
+    let floor = a.iter().map(|p| p.element_sum() / 3.0).sum::<f64>() / a.len() as f64 * 0.01;
+    a.iter()
+        .zip(b)
+        .filter(|(a, b)| (**a - **b).abs().cmpgt(a.max(**b).max(DVec3::splat(floor)) * tolerance).any())
+        .count()
+}
+
+fn mean(pixels: &[DVec3]) -> DVec3 {
+    pixels.iter().sum::<DVec3>() / pixels.len() as f64
+}
+
+/// Every kind of scene: instances and everything else, a plain mesh, and the simple ray tracer.
+fn scenes() -> Vec<(&'static str, Scene)> {
+    let room = cornell_like(96, 96);
+    let mut sun = cornell_like(96, 96);
+    // Without the ceiling and its lamp: open to a luminaire at infinity.
+    sun.objects.remove(1);
+    sun.objects.remove(5);
+    sun.luminaires =
+        vec![Luminaire::Infinite { direction: Vec3::new(0.3, -1.0, -0.2).normalize(), irradiance: Vec3::splat(3.0) }];
+    let mut plain = empty(96, 96);
+    add(
+        &mut plain,
+        icosphere(3),
+        Material { emission: Vec3::splat(0.1), ..matte(Vec3::splat(0.6)) },
+        Affine3A::IDENTITY,
+    );
+    plain.objects[0].material = None;
+    plain.sensor.position = Vec3::new(0.25, 0.125, 0.5);
+    let mut simple = cornell_like(96, 96);
+    simple.integrator = Integrator::Simple { ambient: Vec3::splat(0.3) };
+    simple.materials.iter_mut().for_each(|m| m.ambient = m.lambert);
+    vec![("room", room), ("sun", sun), ("furnace", plain), ("simple", simple)]
+}
+
+/// Same random numbers, at most one bounce: pixel by pixel the picture of the reference, to 1e-4. A sample that the two put on
+/// different sides of an edge, or whose choice falls on different sides of a limit, shows as a whole: allowed to 1 pixel in 500.
+#[test]
+fn one_bounce_equals_the_reference_pixel_by_pixel() {
+    for (name, mut scene) in scenes() {
+        if let Integrator::Path { max_bounces } = &mut scene.integrator {
+            *max_bounces = Some(1);
+        }
+        let expected = pixels(&mut Reference::new(&scene), &scene, 8);
+        on_every_backend(|backend| {
+            let found = pixels(&mut backend.tracer(&scene), &scene, 8);
+            let count = differing(&found, &expected, 1e-4);
+            println!("{name}, {}: {count} of {} pixels differ", backend.name(), found.len());
+            assert!(count <= found.len() / 500, "{name}, {}: {count} pixels differ", backend.name());
+        });
+    }
+}
+
+/// Full paths, other seeds: no pixel differs significantly (Welch's test, corrected for their number), and the means are equal.
+#[test]
+fn full_paths_have_the_reference_s_distribution() {
+    for (name, mut scene) in scenes() {
+        scene.film.width = 32;
+        scene.film.height = 32;
+        let samples = 1024;
+        let expected = render(&mut Reference::new(&scene), 32, 32, samples, 16);
+        scene.settings.seed = 1;
+        on_every_backend(|backend| {
+            let found = render(&mut backend.tracer(&scene), 32, 32, samples, 16);
+            let p = compare(&found, &expected);
+            let (a, b) = (total(&found), total(&expected));
+            let p_mean = two_sided((a.mean - b.mean) / a.error.hypot(b.error).max(1e-7 * b.mean));
+            println!("{name}, {}: pixels p = {p:.3}, means {} and {} p = {p_mean:.3}", backend.name(), a.mean, b.mean);
+            assert!(p >= SIGNIFICANCE, "{name}, {}: p = {p:e}", backend.name());
+            assert!(p_mean >= SIGNIFICANCE, "{name}, {}: {a:?} {b:?}", backend.name());
+        });
+    }
+}
+
+/// Ray query and compute BVH give one picture: full paths at equal seeds differ only where a ray grazes an edge, which at 16
+/// samples and a handful of bounces may touch 1 pixel in 100.
+#[test]
+fn both_intersectors_give_one_picture() {
+    let all = backends();
+    let [bvh, query] = all.as_slice() else { return };
+    for (name, scene) in scenes() {
+        let a = pixels(&mut bvh.tracer(&scene), &scene, 16);
+        let b = pixels(&mut query.tracer(&scene), &scene, 16);
+        let count = differing(&a, &b, 1e-3);
+        println!("{name}: {count} of {} pixels differ", a.len());
+        assert!(count <= a.len() / 100, "{name}: {count} pixels differ");
+        assert!((mean(&a) - mean(&b)).abs().cmple(mean(&a) * 2e-3).all(), "{name}: {} {}", mean(&a), mean(&b));
+    }
+}
+
+/// `Le / (1 - a)` in a closed shell.
+#[test]
+fn furnace() {
+    for albedo in [0.5f32, 0.8] {
+        let mut scene = empty(32, 32);
+        scene.sensor.position = Vec3::new(0.25, 0.125, 0.5);
+        let glowing = Material { emission: Vec3::ONE, ..matte(Vec3::splat(albedo)) };
+        add(&mut scene, icosphere(3), glowing, Affine3A::IDENTITY);
+        on_every_backend(|backend| {
+            let image = render(&mut backend.tracer(&scene), 32, 32, 512, 16);
+            total(&image).assert_is(1.0 / (1.0 - f64::from(albedo)), 3e-3);
+        });
+    }
+}
+
+/// A point luminaire of intensity pi at the centre of a unit sphere of albedo 0.5: radiance 1 (facets lie inside the sphere by
+/// at most 5e-4; see the reference's own test).
+#[test]
+fn point_luminaire_in_a_sphere() {
+    let mut scene = empty(32, 32);
+    add(&mut scene, icosphere(5), matte(Vec3::splat(0.5)), Affine3A::IDENTITY);
+    scene.sensor.position = Vec3::new(0.25, 0.125, 0.5);
+    let intensity = Vec3::splat(std::f32::consts::PI);
+    scene.luminaires.push(Luminaire::Point { position: Vec3::ZERO, intensity });
+    on_every_backend(|backend| {
+        let image = render(&mut backend.tracer(&scene), 32, 32, 512, 16);
+        total(&image).assert_within(1.0 - 5e-4, 1.0 + 1e-3, 3e-3);
+    });
+}
+
+/// Irradiance of a uniform triangle on a floor: Lambert's polygon formula, `E = Le / 2 * sum of angle_i * (n . normal_i)`.
+#[test]
+fn irradiance_of_a_triangle_lamp() {
+    let corners = [Vec3::new(-0.5, 1.0, -0.25), Vec3::new(0.75, 1.5, 0.0), Vec3::new(0.0, 1.25, 1.0)];
+    let c = corners.map(|c| c.as_dvec3().normalize());
+    let expected = (0..3)
+        .map(|i| {
+            let (a, b) = (c[i], c[(i + 1) % 3]);
+            a.dot(b).acos() * a.cross(b).normalize().y
+        })
+        .sum::<f64>()
+        .abs()
+        / 2.0
+        * 0.5
+        / std::f64::consts::PI;
+    let mut scene = empty(16, 16);
+    // All pixels look at the origin: the field of view is a speck.
+    scene.sensor =
+        luminaire::scene::Sensor { position: Vec3::new(0.0, 0.5, -0.25), target: Vec3::ZERO, up: Vec3::Z, fov: 1e-3 };
+    let floor = quad(Vec3::new(-10.0, 0.0, -10.0), Vec3::X * 20.0, Vec3::Z * 20.0);
+    add(&mut scene, floor, matte(Vec3::splat(0.5)), Affine3A::IDENTITY);
+    add(&mut scene, mesh(corners.to_vec(), &[[0, 1, 2]]), lamp(Vec3::ONE), Affine3A::IDENTITY);
+    on_every_backend(|backend| {
+        let image = render(&mut backend.tracer(&scene), 16, 16, 1024, 16);
+        total(&image).assert_is(expected, 1e-3);
+    });
+}
+
+/// A point luminaire straight above a floor: `kd / pi * I / d^2`; and one at infinity: `kd / pi * E cos`.
+#[test]
+fn inverse_square_and_none_at_infinity() {
+    let mut scene = empty(1, 1);
+    scene.sensor =
+        luminaire::scene::Sensor { position: Vec3::new(0.0, 0.5, -0.25), target: Vec3::ZERO, up: Vec3::Z, fov: 1e-3 };
+    let floor = quad(Vec3::new(-10.0, 0.0, -10.0), Vec3::X * 20.0, Vec3::Z * 20.0);
+    add(&mut scene, floor, matte(Vec3::splat(0.5)), Affine3A::IDENTITY);
+    let diffuse = 0.5 / std::f64::consts::PI;
+    let mut cases = Vec::new();
+    for distance in [0.125f32, 1.0, 10.0, 1000.0] {
+        let point = Luminaire::Point { position: Vec3::Y * distance, intensity: Vec3::splat(2.0) };
+        cases.push((point, diffuse * 2.0 / f64::from(distance).powi(2)));
+    }
+    for angle in [0.0f32, 0.5, 1.5] {
+        let direction = Vec3::new(angle.sin(), -angle.cos(), 0.0);
+        cases.push((
+            Luminaire::Infinite { direction, irradiance: Vec3::splat(2.0) },
+            diffuse * 2.0 * f64::from(angle).cos(),
+        ));
+    }
+    for (luminaire, expected) in cases {
+        scene.luminaires = vec![luminaire];
+        on_every_backend(|backend| {
+            let found = pixels(&mut backend.tracer(&scene), &scene, 1)[0].x;
+            // The pixel is a speck around the origin, not a point: 1e-4.
+            assert!((found / expected - 1.0).abs() < 1e-4, "{}: {found}, expected {expected}", backend.name());
+        });
+    }
+}
+
+/// Tiles, groups and what ran before do not matter: the same bits.
+#[test]
+fn the_partition_of_the_work_does_not_matter() {
+    let scene = cornell_like(24, 20);
+    on_every_backend(|backend| {
+        let mut tracer = backend.tracer(&scene);
+        let all = Tile { x: 0, y: 0, width: 24, height: 20 };
+        let whole = tracer.trace(&Batch { tile: all, samples: 3..11, group: 4 }).expect("traced").sums;
+        for (x, y, width, height) in [(0, 0, 5, 20), (5, 0, 19, 3), (5, 3, 19, 17)] {
+            let tile = Tile { x, y, width, height };
+            let part = tracer.trace(&Batch { tile, samples: 7..11, group: 4 }).expect("traced").sums;
+            for (index, sum) in part.iter().enumerate() {
+                let (row, column) = (index / width as usize, index % width as usize);
+                assert_eq!(*sum, whole[480 + (y as usize + row) * 24 + x as usize + column]);
+            }
+        }
+    });
+}
