@@ -74,7 +74,7 @@ fn missing_scene() {
 fn scene_of_unknown_kind() {
     let folder = Folder::new();
     folder.write("scene.txt", "hello");
-    folder.fails(&["render", "scene.txt"], 1, &["scene.txt", ".obj", ".toml"]);
+    folder.fails(&["render", "scene.txt"], 2, &["scene.txt", ".obj", ".toml"]);
 }
 
 #[test]
@@ -97,11 +97,11 @@ fn bad_obj() {
     folder.write("nan.obj", "v 0 0 0\nv 1 nan 0\nv 0 1 0\nf 1 2 3\n");
     folder.fails(&["render", "nan.obj"], 1, &["nan.obj:2"]);
     folder.write("none.obj", three);
-    folder.fails(&["render", "none.obj"], 1, &["none.obj", "triangle"]);
+    folder.fails(&["render", "none.obj"], 1, &["none.obj", "nothing to trace"]);
     folder.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
-    folder.fails(&["render", "flat.obj"], 1, &["flat.obj", "triangle"]);
+    folder.fails(&["render", "flat.obj"], 1, &["flat.obj", "nothing to trace"]);
     folder.write("empty.obj", "");
-    folder.fails(&["render", "empty.obj"], 1, &["empty.obj", "triangle"]);
+    folder.fails(&["render", "empty.obj"], 1, &["empty.obj", "nothing to trace"]);
     std::fs::write(folder.path().join("binary.obj"), [0xff, 0xfe, 0x00, 0x80]).unwrap();
     folder.fails(&["render", "binary.obj"], 1, &["binary.obj"]);
 }
