@@ -51,7 +51,7 @@ uint intersect_node(TraversalRay ray, float t_max, uint node, out uvec2 bases, o
     uvec4 nz = texelFetch(nodes, base + 4);
     bases = n1.xy;
     inner_mask = n0.w >> 24u;
-    vec3 extent = uintBitsToFloat(uvec3(n0.w << 23u, (n0.w << 15u) & 0x7f800000u, (n0.w << 7u) & 0x7f800000u));
+    vec3 extent = uintBitsToFloat(uvec3(n0.w << 23u, n0.w << 15u, n0.w << 7u) & 0x7f800000u);
     vec3 scale = extent * ray.inverse;
     vec3 offset = (uintBitsToFloat(n0.xyz) - ray.origin) * ray.inverse;
     // Entry planes in xy, exit planes in zw.

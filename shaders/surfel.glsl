@@ -30,7 +30,10 @@ Surfel surfel(Hit hit, vec3 wo) {
     vec3 pb = w.x * b;
     vec3 pc = w.y * c;
     s.position = pa + pb + pc;
-    s.position_error = gamma(7.0) * (abs(pa) + abs(pb) + abs(pc));
+    // Interpolation rounds by the corners' coordinates, in each axis by itself; the intersection tests shear the triangle
+    // and mix the axes, so that their distance to its plane rounds by its size.
+    vec3 size = abs(b - a) + abs(c - a);
+    s.position_error = gamma(7.0) * (abs(pa) + abs(pb) + abs(pc)) + gamma(8.0) * max(size.x, max(size.y, size.z));
     s.geometric_normal = cross(b - a, c - a);
     s.material = t0.w;
 

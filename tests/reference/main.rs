@@ -1,0 +1,9 @@
+//! The reference against closed forms, its two intersectors against each other, and its sampling against its densities.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod intersection;
+mod light;
+mod sampling;
+mod transport;

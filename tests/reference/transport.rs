@@ -1,0 +1,240 @@
+//! Whole paths: closed forms for closed rooms, self-intersection, and what the result may depend on.
+
+use crate::common::scenes::*;
+use crate::common::statistics::*;
+use glam::{Affine3A, DVec3, Vec3};
+use luminaire::film::{Batch, PixelSum, Tile};
+use luminaire::reference::Reference;
+use luminaire::render::Tracer;
+use luminaire::scene::{Integrator, Luminaire, Material, Scene};
+
+/// A closed shell around the sensor that emits 1.
+fn furnace(albedo: Vec3) -> Scene {
+    let mut scene = empty(16, 16);
+    scene.sensor.position = Vec3::new(0.25, 0.125, 0.5);
+    scene.sensor.target = Vec3::new(0.5, -1.0, 0.25);
+    let glowing = Material { emission: Vec3::ONE, ..matte(albedo) };
+    add(&mut scene, icosphere(3), glowing, Affine3A::IDENTITY);
+    scene
+}
+
+/// Mean of each channel over all pixels and samples.
+fn means(scene: &Scene, samples: u32) -> [Estimate; 3] {
+    let tracer = Reference::new(scene);
+    let pixels = scene.film.width * scene.film.height;
+    let all: Vec<DVec3> = (0..samples * pixels).map(|i| tracer.radiance(i % pixels, i / pixels).0).collect();
+    [0, 1, 2].map(|channel| Estimate::new(all.iter().map(|l| l[channel])))
+}
+
+/// `Le / (1 - a)`, in any closed shell, whatever the albedo of the other channels.
+#[test]
+fn furnace_of_any_albedo() {
+    for albedo in [Vec3::splat(0.5), Vec3::splat(0.8), Vec3::new(0.2, 0.5, 0.8)] {
+        let found = means(&furnace(albedo), 400);
+        for (channel, estimate) in found.into_iter().enumerate() {
+            estimate.assert_is(1.0 / (1.0 - f64::from(albedo[channel])), 5e-3);
+        }
+    }
+}
+
+/// A limit of `k` bounces cuts the furnace's series after `a^(k + 1)`.
+#[test]
+fn furnace_with_limited_bounces() {
+    for bounces in [0, 1, 2, 5] {
+        let mut scene = furnace(Vec3::splat(0.7));
+        scene.integrator = Integrator::Path { max_bounces: Some(bounces) };
+        let a = f64::from(0.7f32);
+        means(&scene, 200)[0].assert_is((0..=bounces as i32 + 1).map(|k| a.powi(k)).sum(), 5e-3);
+    }
+}
+
+/// A point luminaire of intensity pi at the centre of a unit sphere of albedo 0.5: radiance 1.
+///
+/// Corners lie on the sphere and facets at a distance of at least `h` inside it, so the irradiance `pi h' / d^3` is
+/// between `pi h` and `pi / h^2`, and with it (the reflected light is an average) the radiance between `h` and `1 / h^2`.
+#[test]
+fn point_luminaire_in_a_sphere() {
+    let mut scene = empty(16, 16);
+    let ball = icosphere(5);
+    let h = ball.triangles.iter().map(|t| {
+        let [a, b, c] = t.vertices.map(|v| ball.positions[v as usize].as_dvec3());
+        (b - a).cross(c - a).normalize().dot(a).abs()
+    });
+    let h = h.fold(1.0, f64::min);
+    assert!(h > 1.0 - 5e-4);
+    add(&mut scene, ball, matte(Vec3::splat(0.5)), Affine3A::IDENTITY);
+    scene.sensor.position = Vec3::new(0.25, 0.125, 0.5);
+    let intensity = Vec3::splat(std::f32::consts::PI);
+    scene.luminaires.push(Luminaire::Point { position: Vec3::ZERO, intensity });
+    for estimate in means(&scene, 800) {
+        estimate.assert_within(h, h.powi(-2), 3e-3);
+    }
+}
+
+/// The simple ray tracer: emission, direct light and the ambient term; one ray and one shadow ray.
+#[test]
+fn simple_integrator_adds_the_ambient_term() {
+    let mut scene = empty(4, 4);
+    let material =
+        Material { ambient: Vec3::new(0.1, 0.2, 0.3), emission: Vec3::splat(0.25), ..matte(Vec3::splat(0.5)) };
+    add(&mut scene, quad(Vec3::new(-9.0, -9.0, -2.0), Vec3::X * 18.0, Vec3::Y * 18.0), material, Affine3A::IDENTITY);
+    scene.luminaires.push(Luminaire::Infinite { direction: -Vec3::Z, irradiance: Vec3::splat(std::f32::consts::PI) });
+    // Without the panel's own light, which cannot reach itself, but takes part in the choice.
+    scene.integrator = Integrator::Simple { ambient: Vec3::splat(2.0) };
+    let tracer = Reference::new(&scene);
+    let (mut seen, mut dark) = (0, 0);
+    for sample in 0..2000 {
+        let (radiance, rays) = tracer.radiance(5, sample);
+        let base = DVec3::splat(0.25) + 2.0 * Vec3::new(0.1, 0.2, 0.3).as_dvec3();
+        let direct = radiance - base;
+        match rays {
+            2 if direct.x > 1e-9 => seen += 1,
+            _ => dark += 1,
+        }
+        assert!(rays <= 2 && (direct.x - direct.y).abs() < 1e-12 && (direct.x - direct.z).abs() < 1e-12);
+    }
+    assert!(seen > 0 && seen + dark == 2000);
+    let mean = Estimate::new((0..20_000).map(|sample| tracer.radiance(5, sample).0.x));
+    let ambient = 2.0 * f64::from(0.1f32);
+    mean.assert_is(0.25 + ambient + 0.5 * f64::from(std::f32::consts::PI) / std::f64::consts::PI, 2e-2);
+}
+
+/// In a convex shell every point sees the centre and no point sees its own triangle, at any scale, place and angle.
+#[test]
+fn surfaces_do_not_shadow_or_hit_themselves() {
+    let stretched = Affine3A::from_rotation_x(0.5) * Affine3A::from_scale(Vec3::new(1.0, 0.01, 1.0));
+    let mut shell = empty(32, 32);
+    add(&mut shell, icosphere(3), matte(Vec3::splat(0.5)), Affine3A::IDENTITY);
+    shell.luminaires.push(Luminaire::Point { position: Vec3::ZERO, intensity: Vec3::ONE });
+    shell.sensor.fov = 150.0;
+    let mut flat = shell.clone();
+    flat.objects[0].object_to_world = stretched;
+    for (scale, shift) in [
+        (1.0, Vec3::ZERO),
+        (1.0, Vec3::new(1e5, -1e5, 1e5)),
+        (1e3, Vec3::ZERO),
+        (1e-3, Vec3::ZERO),
+        (1e-3, Vec3::X * 8.0),
+    ] {
+        for scene in [&shell, &flat] {
+            let scene = transformed(scene, scale, shift);
+            let tracer = Reference::new(&scene);
+            for i in 0..20_000 {
+                let (origin, direction) = tracer.sensor_ray(i % 1024, i / 1024);
+                let hit = tracer.closest_hit(origin, direction, f64::INFINITY).expect("a closed shell");
+                let surfel = tracer.surfel(&hit, -direction);
+                let mut rays = 0;
+                let light = tracer.direct_light(&surfel, -direction, [0; 4], &mut rays);
+                assert!(light.x > 0.0 && rays == 1, "the shell shadows itself at {}", surfel.position);
+                // Along the normal, slanted, and grazing down to a millionth.
+                let (tangent, _) = luminaire::reference::warp::frame(surfel.geometric_normal);
+                for rise in [1.0, 0.1, 1e-3, 1e-6] {
+                    let wi = (tangent + rise * surfel.geometric_normal).normalize();
+                    let next = tracer.closest_hit(surfel.offset_ray_origin(wi), wi, f64::INFINITY);
+                    let next = next.unwrap_or_else(|| panic!("a ray leaves the shell at {}", surfel.position));
+                    assert_ne!(next.triangle, hit.triangle, "hits itself at rise {rise}, t = {}", next.t);
+                }
+            }
+        }
+    }
+}
+
+/// Largest difference of two pictures relative to their mean.
+fn largest_difference(a: &Image, b: &Image) -> f64 {
+    let differences = a.mean.iter().flatten().zip(b.mean.iter().flatten()).map(|(a, b)| (a - b).abs());
+    differences.fold(0.0, f64::max) / total(a).mean
+}
+
+/// A room is as bright when it stands elsewhere or is built larger, sample by sample.
+#[test]
+fn pictures_do_not_depend_on_place_and_scale() {
+    let scene = cornell_like(24, 24);
+    let picture = |scene: &Scene| render(&mut Reference::new(scene), 24, 24, 16, 2);
+    let here = picture(&scene);
+    // Powers of two are exact. The others round the f32 scene: 1e-5 of a pixel's mean is what that may change, where no
+    // sample crosses an edge.
+    for (scale, shift, tolerance) in [
+        (1.0 / 1024.0, Vec3::ZERO, 1e-12),
+        (1024.0, Vec3::ZERO, 1e-12),
+        (1.0, Vec3::new(131_072.0, -131_072.0, 65_536.0), 1e-6),
+        (1.0, Vec3::new(1e5, -1e5, 1e5), 1e-6),
+        (1e3, Vec3::ZERO, 1e-3),
+        (1e-3, Vec3::ZERO, 1e-3),
+    ] {
+        let there = picture(&transformed(&scene, scale, shift));
+        let largest = largest_difference(&here, &there);
+        assert!(largest <= tolerance, "scale {scale}, shift {shift}: {largest:e}");
+    }
+}
+
+/// Trees or brute force, few or many threads, tiles, groups: the same samples to the last bit.
+#[test]
+fn the_partition_of_the_work_does_not_matter() {
+    let scene = cornell_like(12, 10);
+    let mut tracer = Reference::new(&scene);
+    let all = Tile { x: 0, y: 0, width: 12, height: 10 };
+    let whole = tracer.trace(&Batch { tile: all, samples: 3..11, group: 4 }).expect("traced").sums;
+    assert_eq!(whole.len(), 240);
+
+    let brute =
+        Reference::brute_force(&scene).trace(&Batch { tile: all, samples: 3..11, group: 4 }).expect("traced").sums;
+    assert_eq!(whole, brute);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
+    let single = pool.install(|| tracer.trace(&Batch { tile: all, samples: 3..11, group: 4 })).expect("traced").sums;
+    assert_eq!(whole, single);
+
+    for (x, y, width, height) in [(0, 0, 5, 10), (5, 0, 7, 3), (5, 3, 7, 7)] {
+        let tile = Tile { x, y, width, height };
+        let sums = tracer.trace(&Batch { tile, samples: 3..11, group: 4 }).expect("traced").sums;
+        for (index, sum) in sums.iter().enumerate() {
+            let (group, in_tile) = (index / tile.pixels(), index % tile.pixels());
+            let (row, column) = (in_tile / width as usize, in_tile % width as usize);
+            assert_eq!(*sum, whole[group * 120 + (y as usize + row) * 12 + x as usize + column]);
+        }
+    }
+    // One by one; then groups that do not divide the samples.
+    let single = tracer.trace(&Batch { tile: all, samples: 3..11, group: 1 }).expect("traced").sums;
+    let uneven = tracer.trace(&Batch { tile: all, samples: 3..11, group: 3 }).expect("traced").sums;
+    let add = |sums: &[PixelSum], range: std::ops::Range<usize>, pixel: usize| {
+        range.fold(PixelSum::default(), |mut total, group| {
+            let sum = sums[group * 120 + pixel];
+            total.radiance = [0, 1, 2].map(|c| total.radiance[c] + sum.radiance[c]);
+            total.rays += sum.rays;
+            total
+        })
+    };
+    for pixel in 0..120 {
+        assert_eq!(add(&single, 0..4, pixel), whole[pixel]);
+        assert_eq!(add(&single, 4..8, pixel), whole[120 + pixel]);
+        assert_eq!(add(&single, 3..6, pixel), uneven[120 + pixel]);
+        assert_eq!(add(&single, 6..8, pixel), uneven[240 + pixel]);
+    }
+}
+
+/// Samples that are not finite are black and counted.
+#[test]
+fn non_finite_samples_are_counted() {
+    let mut scene = furnace(Vec3::splat(0.5));
+    scene.materials[0].emission = Vec3::new(f32::NAN, 1.0, 1.0);
+    scene.integrator = Integrator::Path { max_bounces: Some(0) };
+    let tile = Tile { x: 0, y: 0, width: 16, height: 16 };
+    let traced = Reference::new(&scene).trace(&Batch { tile, samples: 0..3, group: 3 }).expect("traced");
+    assert_eq!(traced.non_finite, 3 * 256);
+    assert!(traced.sums.iter().all(|s| s.radiance == [0.0; 3] && s.rays > 0));
+}
+
+/// Pictures with different seeds agree within their own uncertainty, and one with a slightly different wall does not.
+#[test]
+fn pictures_agree_within_their_uncertainty() {
+    let picture = |seed: u32, wall: f32| {
+        let mut scene = cornell_like(16, 16);
+        scene.settings.seed = seed;
+        scene.materials[0].lambert = Vec3::splat(wall);
+        render(&mut Reference::new(&scene), 16, 16, 1024, 32)
+    };
+    let first = picture(1, 0.7);
+    let p = compare(&first, &picture(2, 0.7));
+    assert!(p >= SIGNIFICANCE, "p = {p:.1e}");
+    let p = compare(&first, &picture(2, 0.9));
+    assert!(p < SIGNIFICANCE, "a brighter floor goes unnoticed: p = {p:.1e}");
+}
