@@ -75,7 +75,8 @@ install() {
     printf '%s\n' "$commands"
     export DEBIAN_FRONTEND=noninteractive
     as_root apt-get $apt_options update || fail "apt-get update failed; see above"
-    if [ $with_backports = yes ]; then
+    # On a machine whose package lists were empty, apt only now knows what it has.
+    if [ $with_backports = yes ] && [ -z "$(archive_of bookworm-backports)" ]; then
         local uri
         uri=$(archive_of bookworm)
         [ -n "$uri" ] || fail "apt has no source for the release bookworm, so there is none for bookworm-backports"

@@ -3,6 +3,7 @@
 use super::{print, table};
 use glam::Vec3;
 use luminaire::Result;
+use luminaire::gpu::model::KernelModel;
 use luminaire::scene::{self, Integrator, Luminaire, LuminaireTable, Mesh, SampledLuminaire, Scene};
 use std::path::Path;
 use std::process::ExitCode;
@@ -45,6 +46,7 @@ fn describe(scene: &Scene) -> String {
                     scene.settings.spp, scene.settings.seed, scene.settings.exposure
                 ),
             ),
+            row("kernel", KernelModel::of(scene).to_string()),
             row("memory", memory(scene)),
         ],
     );
@@ -84,11 +86,14 @@ fn memory(scene: &Scene) -> String {
     let mesh = |m: &Mesh| size_of_val(&m.positions[..]) + size_of_val(&m.normals[..]) + size_of_val(&m.triangles[..]);
     let geometry: usize = scene.meshes.iter().map(mesh).sum();
     let film = u64::from(scene.film.width) * u64::from(scene.film.height) * 28;
-    let mib = |bytes: f64| format!("{:.1} MiB", bytes / f64::from(1 << 20));
+    let size = |bytes: f64| match bytes {
+        b if b < f64::from(1 << 20) => format!("{:.1} KiB", b / f64::from(1 << 10)),
+        b => format!("{:.1} MiB", b / f64::from(1 << 20)),
+    };
     format!(
         "{} of geometry and {} of film, besides about 100 bytes a stored triangle for the BVH",
-        mib(geometry as f64),
-        mib(film as f64)
+        size(geometry as f64),
+        size(film as f64)
     )
 }
 
@@ -228,6 +233,7 @@ mod tests {
             "22 in 22 objects; 1 stored in 1 meshes",
             "64 x 48 pixels, box filter",
             "at most 4 indirect bounces",
+            "path tracer, Lambert, instances, point luminaires, area luminaires",
             "mirrored, volume times 2.0000",
             "... and 2 more",
             "(1 2 3)",
