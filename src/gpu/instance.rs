@@ -80,14 +80,16 @@ impl Instance {
                 other => other.to_string(),
             },
         };
-        // SAFETY (these three): the entry points were just loaded; no pointer is passed.
+        // SAFETY: the entry points were just loaded; no pointer is passed (here and in the next two calls).
         let version =
             unsafe { entry.try_enumerate_instance_version() }.map_err(|e| failed("vkEnumerateInstanceVersion", e))?;
         if version.unwrap_or(vk::API_VERSION_1_0) < API_VERSION {
             return Err(Error::NoDevice("the Vulkan loader is older than Vulkan 1.2: update it".into()));
         }
+        // SAFETY: as above.
         let extensions = unsafe { entry.enumerate_instance_extension_properties(None) }
             .map_err(|e| failed("vkEnumerateInstanceExtensionProperties", e))?;
+        // SAFETY: as above.
         let layers = unsafe { entry.enumerate_instance_layer_properties() }
             .map_err(|e| failed("vkEnumerateInstanceLayerProperties", e))?;
 
@@ -146,9 +148,9 @@ impl Instance {
     fn inspect(self: &Arc<Self>, index: usize, raw: vk::PhysicalDevice) -> ash::prelude::VkResult<PhysicalDevice> {
         let mut driver = vk::PhysicalDeviceDriverProperties::default();
         let mut structures = vk::PhysicalDeviceAccelerationStructurePropertiesKHR::default();
-        // SAFETY (all below): `raw` comes from this instance; every output structure is alive and chained only where the
-        // device's version or extension says that it knows the structure.
+        // SAFETY: `raw` comes from this instance, here and below.
         let plain = unsafe { self.raw.get_physical_device_properties(raw) };
+        // SAFETY: as above.
         let extensions = unsafe { self.raw.enumerate_device_extension_properties(raw) }?;
         let has = |name: &CStr| extensions.iter().any(|e| e.extension_name_as_c_str() == Ok(name));
         let modern = plain.api_version >= API_VERSION;
@@ -170,10 +172,14 @@ impl Instance {
             properties = properties.push_next(&mut structures);
             features = features.push_next(&mut has_structure).push_next(&mut has_query);
         }
+        // SAFETY: every structure is alive, and chained only where the device says that it knows it (also in the next call).
         unsafe { self.raw.get_physical_device_properties2(raw, &mut properties) };
         let limits = properties.properties.limits;
+        // SAFETY: as above.
         unsafe { self.raw.get_physical_device_features2(raw, &mut features) };
+        // SAFETY: as above.
         let families = unsafe { self.raw.get_physical_device_queue_family_properties(raw) };
+        // SAFETY: as above.
         let memory = unsafe { self.raw.get_physical_device_memory_properties(raw) };
 
         let queue_family = families.iter().position(|f| f.queue_flags.contains(vk::QueueFlags::COMPUTE));

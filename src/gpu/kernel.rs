@@ -78,7 +78,7 @@ impl Kernel {
             bindings.iter().map(|b| vk::DescriptorPoolSize { ty: b.descriptor_type(), descriptor_count: 1 }).collect();
         let set_layout_info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&layout_bindings);
         let pool_info = vk::DescriptorPoolCreateInfo::default().max_sets(1).pool_sizes(&sizes);
-        // SAFETY (all below): every handle is from this device and stored in `kernel` as soon as it exists, so that `drop`
+        // SAFETY: every handle is from this device and stored in `kernel` as soon as it exists, so that `drop`
         // frees it on an early return; the structures and what they point to live until their call returns.
         unsafe {
             kernel.set_layout = raw

@@ -1,8 +1,9 @@
 //! Runs single shader functions over arrays, so that tests can hold each against its twin.
 
+use super::commands::{self, Recorder};
 use super::shader::Shader;
 use super::tracer::GpuScene;
-use super::{Binding, Buffer, Device, Kernel, commands, layout};
+use super::{Binding, Buffer, Device, Kernel, layout};
 use crate::Result;
 use crate::scene::Scene;
 use ash::vk;
@@ -80,27 +81,10 @@ impl Probe {
             size_of::<layout::Call>() as u32,
         )?;
         commands::submit(device, "probe", |cmd| {
-            let shader = vk::PipelineStageFlags::COMPUTE_SHADER;
-            let transfer = vk::PipelineStageFlags::TRANSFER;
-            // SAFETY (both): the buffers are alive until the submission has ended and equally large.
-            unsafe { device.raw.cmd_fill_buffer(cmd, output.raw, 0, vk::WHOLE_SIZE, 0) };
-            commands::barrier(
-                device,
-                cmd,
-                (transfer, vk::AccessFlags::TRANSFER_WRITE),
-                (shader, vk::AccessFlags::SHADER_WRITE),
-            );
-            kernel.dispatch(cmd, bytemuck::bytes_of(&push), [push.count.div_ceil(64), 1, 1]);
-            commands::barrier(
-                device,
-                cmd,
-                (shader, vk::AccessFlags::SHADER_WRITE),
-                (transfer, vk::AccessFlags::TRANSFER_READ),
-            );
-            let copy = [vk::BufferCopy { src_offset: 0, dst_offset: 0, size: input.size }];
-            unsafe { device.raw.cmd_copy_buffer(cmd, output.raw, readback.raw, &copy) };
-            let host = (vk::PipelineStageFlags::HOST, vk::AccessFlags::HOST_READ);
-            commands::barrier(device, cmd, (transfer, vk::AccessFlags::TRANSFER_WRITE), host);
+            let recorder = Recorder { device, cmd };
+            recorder.clear(&output);
+            recorder.dispatch(&kernel, bytemuck::bytes_of(&push), [push.count.div_ceil(64), 1, 1]);
+            recorder.read_back(&output, input.size, &readback, 0);
         })?;
         let bytes = &readback.mapped()?[..size_of_val(arguments)];
         Ok(bytemuck::pod_collect_to_vec(bytes))

@@ -1,8 +1,9 @@
 //! The GPU tracer: a scene on a device, and the kernel that traces batches of it.
 
+use super::commands::{self, Recorder};
 use super::model::KernelModel;
 use super::shader::Shader;
-use super::{Binding, Buffer, Device, Kernel, commands, layout};
+use super::{Binding, Buffer, Device, Kernel, layout};
 use crate::Result;
 use crate::accel::Geometry;
 use crate::film::{Batch, PixelSum};
@@ -118,30 +119,13 @@ impl Tracer for GpuTracer {
             group: batch.group,
         };
         let size = (count * size_of::<layout::PixelSum>()) as u64;
+        let workgroups = [tile.width.div_ceil(WORKGROUP), tile.height.div_ceil(WORKGROUP), groups];
         let device_seconds = commands::submit(&self.device, "path trace", |cmd| {
-            let raw = &self.device.raw;
-            // SAFETY (both): the buffers are alive until the submission has ended, and the ranges lie inside them.
-            unsafe { raw.cmd_fill_buffer(cmd, self.counters.raw, 0, vk::WHOLE_SIZE, 0) };
-            let shader = vk::PipelineStageFlags::COMPUTE_SHADER;
-            let transfer = vk::PipelineStageFlags::TRANSFER;
-            let shader_access = vk::AccessFlags::SHADER_READ | vk::AccessFlags::SHADER_WRITE;
-            commands::barrier(&self.device, cmd, (transfer, vk::AccessFlags::TRANSFER_WRITE), (shader, shader_access));
-            let workgroups = [tile.width.div_ceil(WORKGROUP), tile.height.div_ceil(WORKGROUP), groups];
-            self.kernel.dispatch(cmd, bytemuck::bytes_of(&push), workgroups);
-            commands::barrier(
-                &self.device,
-                cmd,
-                (shader, vk::AccessFlags::SHADER_WRITE),
-                (transfer, vk::AccessFlags::TRANSFER_READ),
-            );
-            let sums = [vk::BufferCopy { src_offset: 0, dst_offset: 0, size }];
-            let counters = [vk::BufferCopy { src_offset: 0, dst_offset: size, size: 16 }];
-            unsafe {
-                raw.cmd_copy_buffer(cmd, self.sums.raw, self.readback.raw, &sums);
-                raw.cmd_copy_buffer(cmd, self.counters.raw, self.readback.raw, &counters);
-            }
-            let host = (vk::PipelineStageFlags::HOST, vk::AccessFlags::HOST_READ);
-            commands::barrier(&self.device, cmd, (transfer, vk::AccessFlags::TRANSFER_WRITE), host);
+            let recorder = Recorder { device: &self.device, cmd };
+            recorder.clear(&self.counters);
+            recorder.dispatch(&self.kernel, bytemuck::bytes_of(&push), workgroups);
+            recorder.read_back(&self.sums, size, &self.readback, 0);
+            recorder.read_back(&self.counters, 16, &self.readback, size);
         })?;
         let bytes = &self.readback.mapped()?[..size as usize + 16];
         let (sums, counters) = bytes.split_at(size as usize);
