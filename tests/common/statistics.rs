@@ -75,7 +75,7 @@ pub struct Image {
 
 /// Renders samples 0 to `samples` of every pixel, in `groups` equal groups, from whose spread the variance follows.
 pub fn render(tracer: &mut dyn Tracer, width: u32, height: u32, samples: u32, groups: u32) -> Image {
-    assert!(groups >= 2 && samples % groups == 0);
+    assert!(groups >= 2 && samples.is_multiple_of(groups));
     let tile = Tile { x: 0, y: 0, width, height };
     let traced = tracer.trace(&Batch { tile, samples: 0..samples, group: samples / groups }).expect("the tracer works");
     assert_eq!(traced.non_finite, 0);

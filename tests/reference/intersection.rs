@@ -73,7 +73,7 @@ fn trees_and_brute_force_agree() {
     }
     let (brute, fast) = (Reference::brute_force(&scene), Reference::new(&scene));
     let mut hits = 0;
-    for i in 0..40_000 {
+    for i in 0..12_000 {
         let to = target(&scene, &mut rng);
         let distance = 10f64.powf(rng.random_range(-2.0..8.0));
         let mut direction = in_cube(&mut rng);
@@ -95,7 +95,7 @@ fn trees_and_brute_force_agree() {
             assert_eq!(brute.occluded(origin, direction, t_max), expected.is_some());
         }
     }
-    assert!(hits > 20_000, "only {hits} hits: the test tests little");
+    assert!(hits > 6_000, "only {hits} hits: the test tests little");
 }
 
 /// From inside a closed mesh every ray hits, also straight through edges and corners.
@@ -127,8 +127,9 @@ fn hits_lie_on_the_ray_and_on_the_surface() {
     let mut hits = 0;
     for _ in 0..20_000 {
         let origin = in_cube(&mut rng) * 3.0;
-        let direction = in_cube(&mut rng);
-        // Nearest positive root of |origin + t direction| = 1; the facets of this sphere are at most 1e-3 inside it.
+        let direction = in_cube(&mut rng) * 1.2 - origin;
+        // Nearest positive root of |origin + t direction| = 1; the facets are at most 2e-3 inside, and f32
+        // puts the corners up to 1e-7 outside.
         let nearest = |radius: f64| {
             let (a, b, c) =
                 (direction.length_squared(), origin.dot(direction), origin.length_squared() - radius * radius);
@@ -136,8 +137,9 @@ fn hits_lie_on_the_ray_and_on_the_surface() {
             [(-b - root) / a, (-b + root) / a].into_iter().find(|t| *t > 0.0)
         };
         let hit = tracer.closest_hit(origin, direction, f64::INFINITY);
-        match (nearest(1.0 - 1e-3), nearest(1.0), hit) {
-            (Some(inner), Some(outer), Some(hit)) => {
+        match (nearest(1.0 - 2e-3), nearest(1.0 + 1e-7), hit) {
+            (Some(inner), Some(outer), hit) => {
+                let hit = hit.expect("a ray into the inner sphere hits");
                 let (low, high) = (inner.min(outer), inner.max(outer));
                 assert!(hit.t >= low && hit.t <= high + 1e-12, "{} is not in [{low}, {high}]", hit.t);
                 let [b1, b2] = hit.barycentrics;
@@ -149,10 +151,10 @@ fn hits_lie_on_the_ray_and_on_the_surface() {
                 hits += 1;
             }
             (None, None, hit) => assert_eq!(hit, None),
-            _ => {} // Between the spheres, or grazing: either may be right.
+            _ => {} // Between the spheres: either may be right.
         }
     }
-    assert!(hits > 2_000);
+    assert!(hits > 10_000, "only {hits} hits: the test tests little");
 }
 
 /// `t` is strictly between 0 and `t_max`, in multiples of the direction.
@@ -202,7 +204,8 @@ fn extreme_meshes() {
                 let size = f64::from(scale);
                 let origin = DVec3::new(f64::from(i) + 0.25, 0.25, 1.0) * size;
                 let hit = tracer.closest_hit(origin, -DVec3::Z, f64::INFINITY).expect("a hit");
-                assert_eq!((hit.triangle, hit.t), (i, size), "scale {scale}, {n} triangles");
+                assert_eq!(hit.triangle, i, "scale {scale}, {n} triangles");
+                assert!((hit.t / size - 1.0).abs() < 1e-15, "scale {scale}: t = {}", hit.t);
             }
         }
     }

@@ -108,7 +108,7 @@ fn area_luminaire_matches_lamberts_formula() {
 #[test]
 fn choosing_a_luminaire_is_unbiased() {
     let mut scene = floor();
-    scene.luminaires.push(point(Vec3::new(1.0, 2.0, 0.0), 3.0));
+    scene.luminaires.push(point(Vec3::new(1.0, 1.0, 0.0), 3.0));
     scene.luminaires.push(point(Vec3::new(1.0, -2.0, 0.0), 50.0)); // Below the floor.
     let slanted = Vec3::new(0.6, -0.8, 0.0);
     scene.luminaires.push(Luminaire::Infinite { direction: slanted, irradiance: Vec3::splat(0.01) });
@@ -119,11 +119,11 @@ fn choosing_a_luminaire_is_unbiased() {
 
     let (x, z) = (-2.0f64, 1.0f64);
     let p = DVec3::new(x, 0.0, z);
-    let expected = 3.0 * 2.0 / (9.0 + z * z + 4.0).powf(1.5)
+    let expected = 3.0 / (9.0 + z * z + 1.0).powf(1.5)
         + 0.01 * 0.8
         + 4.0 * lambert_polygon(p, DVec3::Y, &lamp_corners())
         + 9.0 * lambert_polygon(p, DVec3::Y, &second);
-    irradiance(&Reference::new(&scene), x, z, 400_000).assert_is(expected, 5e-3);
+    irradiance(&Reference::new(&scene), x, z, 400_000).assert_is(expected, 6e-3);
 }
 
 /// Only what is between a surface and a luminaire casts a shadow.
@@ -197,7 +197,7 @@ fn light_does_not_leak_through_closed_walls() {
     assert!(image.mean.iter().all(|p| *p == [0.0; 3]));
     assert!(image.rays > 16 * 16 * 64 * 5, "paths go on inside: {} rays", image.rays);
 
-    scene.luminaires.push(point(Vec3::ZERO, 1.0));
+    scene.luminaires.push(point(Vec3::ZERO, 1000.0));
     let image = render(&mut Reference::new(&scene), 16, 16, 64, 2);
     assert!(image.mean.iter().all(|p| p[0] > 0.0), "and are lit from inside");
 }
