@@ -11,7 +11,6 @@ pub mod error;
 pub mod film;
 pub mod gpu;
 pub mod image_io;
-pub mod measure;
 pub mod reference;
 pub mod render;
 pub mod sampling;

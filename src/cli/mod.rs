@@ -5,6 +5,8 @@ pub mod inspect;
 mod progress;
 pub mod render;
 mod stats;
+#[cfg(feature = "shaderc")]
+mod watch;
 
 use luminaire::Error;
 use luminaire::backend::Backend;
@@ -107,6 +109,10 @@ pub struct RenderOptions {
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(..=1_000_000), help_heading = "Quality")]
     pub max_bounces: Option<u32>,
 
+    /// Render again whenever a shader changes (the sources are in LUMINAIRE_SHADERS, or where the program was built).
+    #[cfg(feature = "shaderc")]
+    #[arg(long, help_heading = "Device")]
+    pub watch: bool,
     /// What traces the rays.
     #[arg(long, value_name = "NAME", default_value = "auto", help_heading = "Device")]
     pub backend: BackendName,

@@ -43,9 +43,24 @@ pub fn run(options: &RenderOptions) -> Result<ExitCode> {
     Film::check_size(scene.film.width, scene.film.height)?;
     scene.warnings.iter().for_each(|warning| say(&format!("warning: {warning}")));
 
+    #[cfg(feature = "shaderc")]
+    if options.watch {
+        return super::watch::repeat(&STOP, &|| trace(options, &scene, seconds, &outputs, &say));
+    }
+    trace(options, &scene, seconds, &outputs, &say)
+}
+
+/// Opens the device, renders and writes.
+fn trace(
+    options: &RenderOptions,
+    scene: &Scene,
+    mut seconds: Seconds,
+    outputs: &[PathBuf],
+    say: &dyn Fn(&str),
+) -> Result<ExitCode> {
     let start = Instant::now();
     let request = Request { backend: options.backend.backend(), device: options.device.clone() };
-    let mut opened = backend::open(&scene, &request)?;
+    let mut opened = backend::open(scene, &request)?;
     seconds.open = start.elapsed().as_secs_f64();
     seconds.build = opened.build_seconds;
     let notice = if opened.notice { "notice: " } else { "" };
@@ -60,7 +75,7 @@ pub fn run(options: &RenderOptions) -> Result<ExitCode> {
     reporter.finish();
     seconds.render = rendered.progress.seconds;
     seconds.device = rendered.device_seconds;
-    finish(options, &scene, &opened, rendered, seconds, &outputs, &say)
+    finish(options, scene, &opened, rendered, seconds, outputs, say)
 }
 
 /// Writes what there is, and tells how it ended.

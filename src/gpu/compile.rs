@@ -4,7 +4,7 @@ use crate::{Error, Result};
 use std::path::PathBuf;
 
 /// Where the sources are: `LUMINAIRE_SHADERS`, or the folder that the program was built from.
-pub(crate) fn folder() -> PathBuf {
+pub fn folder() -> PathBuf {
     std::env::var_os("LUMINAIRE_SHADERS")
         .map_or_else(|| PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders")), PathBuf::from)
 }

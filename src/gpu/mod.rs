@@ -6,7 +6,7 @@
 mod buffer;
 mod commands;
 #[cfg(feature = "shaderc")]
-pub(crate) mod compile;
+mod compile;
 mod device;
 mod instance;
 mod kernel;
@@ -24,3 +24,5 @@ pub use shader::{SHADERS, Shader};
 pub use tracer::GpuTracer;
 
 pub(crate) use commands::{barrier, submit};
+#[cfg(feature = "shaderc")]
+pub use compile::folder as shader_folder;
