@@ -66,6 +66,8 @@ pub struct DeviceReport {
     pub kind: &'static str,
     /// What it offers and lacks, a line each: feature and yes / no / value.
     pub features: Vec<(String, String)>,
+    /// Whether it offers ray queries.
+    pub ray_query: bool,
     /// The backend that `auto` would run there, or why the device cannot be used.
     pub backend: std::result::Result<Backend, String>,
     /// Why that backend.
@@ -213,6 +215,7 @@ pub fn devices() -> Result<Vec<DeviceReport>> {
                 driver: d.driver.clone(),
                 kind: d.kind(),
                 features: d.features(),
+                ray_query: d.ray_query,
                 backend: d.usable().map(|()| backend),
                 why: why.into(),
                 preferred: best == Some(d.index),

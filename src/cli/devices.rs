@@ -74,6 +74,7 @@ mod tests {
             backend,
             why: "it has RT cores".into(),
             preferred: index == 2,
+            ray_query: true,
         };
         let devices = [
             device(0, "software (CPU)", Ok(Backend::ComputeBvh)),

@@ -12,10 +12,10 @@ const FOV: f32 = 40.0;
 const VIEW: DVec3 = DVec3::new(0.5, 0.35, 1.0);
 /// The direction in which the key light travels: from the upper left, behind the camera.
 const KEY_DIRECTION: DVec3 = DVec3::new(0.3, -0.8, -0.7);
-/// Irradiance of the key light: a white surface that faces it has a radiance of about 0.8.
-const KEY_IRRADIANCE: f32 = 2.5;
+/// Irradiance of the key light: a white surface that faces it has a radiance of 0.7, and with the ambient term 0.9: not yet clipped.
+const KEY_IRRADIANCE: f32 = 2.2;
 /// Ambient radiance beside the key light.
-const AMBIENT: f32 = 0.25;
+const AMBIENT: f32 = 0.2;
 
 /// Size and filter of the picture where nothing is said.
 pub(super) const FILM: FilmSettings = FilmSettings { width: 512, height: 512, filter: Filter::Box };

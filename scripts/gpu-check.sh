@@ -1,0 +1,43 @@
+#!/usr/bin/env bash
+# Checks and times luminaire on a GPU machine that has no Rust toolchain.
+#
+#   scripts/gpu-check.sh pack       here: builds, and puts all that is needed into target/gpu-check/
+#   target/gpu-check/run.sh [OUT]   there: devices, the kernel's tests, renders, and the two tables; writes into OUT
+#
+# The tests run on whatever the GPU offers: where it has no ray query, they say so and test the compute BVH.
+set -euo pipefail
+
+pack() {
+    cd "$(dirname "$0")/.."
+    local pack=target/gpu-check
+    rm -rf $pack && mkdir -p $pack
+    cargo build --release --examples --bins
+    local tests
+    tests=$(cargo test --release --no-run --test gpu --message-format json 2>/dev/null |
+        sed -n 's/.*"executable":"\([^"]*\/gpu-[^"]*\)".*/\1/p' | tail -n 1)
+    [ -n "$tests" ] || { echo "gpu-check: the tests of the kernel were not built" >&2; exit 1; }
+    cp "$tests" $pack/gpu-tests
+    cp target/release/luminaire target/release/examples/accuracy_table target/release/examples/speed_table $pack
+    cp -r scenes $pack
+    cp "$0" $pack/run.sh
+    strip $pack/gpu-tests $pack/luminaire $pack/accuracy_table $pack/speed_table 2>/dev/null || true
+    du -sh $pack
+}
+
+check() {
+    local out
+    out=$(mkdir -p "${1:-out}" && cd "${1:-out}" && pwd)
+    cd "$(dirname "$0")"
+    ./luminaire devices | tee "$out/devices.txt"
+    # Sharp where it can be: a failed test ends the run, after its report.
+    ./gpu-tests --nocapture 2>&1 | tee "$out/tests.txt" | grep -E '^(test |SKIP|test result)'
+    ./luminaire render scenes/cornell/cornell.toml -o "$out/cornell.png" --spp 1024 --stats "$out/cornell.json"
+    ./accuracy_table scenes/cornell/cornell.toml scenes/instances/instances.toml scenes/simple/simple.toml \
+        scenes/furnace/furnace.toml | tee "$out/accuracy.md"
+    ./speed_table scenes/cornell/cornell.toml scenes/instances/instances.toml | tee "$out/speed.md"
+}
+
+case "${1:-}" in
+    pack) pack ;;
+    *) if [ -x "$(dirname "$0")/gpu-tests" ]; then check "$@"; else echo "usage: $0 pack" >&2; exit 2; fi ;;
+esac
