@@ -3,6 +3,7 @@
 SHELL := /bin/bash
 BIN := $(or $(CARGO_TARGET_DIR),target)/release/luminaire
 OLD_DRIVER := target/drivers/mesa-22.3.6/lvp_icd.json
+VALIDATION := /usr/share/vulkan/explicit_layer.d/VkLayer_khronos_validation.json
 
 .PHONY: help render test setup build shaders lint
 
@@ -16,6 +17,7 @@ render: setup ## render the Cornell box to out/cornell.png and out/cornell.exr, 
 test: ## install what the tests want, then run them all
 	@scripts/setup.sh test
 	@if [ -f $(OLD_DRIVER) ]; then export LUMINAIRE_OLD_DRIVER="$$PWD/$(OLD_DRIVER)"; fi; \
+	if [ -f $(VALIDATION) ]; then export LUMINAIRE_VALIDATION=1; fi; \
 	echo cargo test --release; cargo test --release
 
 setup: build ## build, and see to a Vulkan device
