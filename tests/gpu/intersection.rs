@@ -27,7 +27,7 @@ impl Ray {
 /// What a backend or the oracle found: (t, object, triangle), or nothing.
 type Found = Option<(f64, u32, u32)>;
 
-fn probe_hits(backend: &Backend, scene: &Scene, function: Function, rays: &[Ray]) -> Vec<Found> {
+fn probe_hits(backend: &Intersector, scene: &Scene, function: Function, rays: &[Ray]) -> Vec<Found> {
     let probe = Probe::new(&backend.device, scene, backend.ray_query).expect("a probe");
     let calls: Vec<Call> = rays.iter().map(Ray::call).collect();
     let results = probe.call(function, &calls).expect("the probe runs");

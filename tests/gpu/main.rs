@@ -21,12 +21,12 @@ const WITHOUT_RAY_QUERY: &str = "LUMINAIRE_TEST_WITHOUT_RAY_QUERY";
 
 /// An open device and the intersector to use on it.
 #[derive(Clone)]
-struct Backend {
+struct Intersector {
     device: Arc<Device>,
     ray_query: bool,
 }
 
-impl Backend {
+impl Intersector {
     fn name(&self) -> &'static str {
         if self.ray_query { "ray query" } else { "compute BVH" }
     }
@@ -43,7 +43,7 @@ fn skip(what: &str) {
 }
 
 /// The intersectors that can run here; none without a device.
-fn backends() -> Vec<Backend> {
+fn backends() -> Vec<Intersector> {
     let devices = match Instance::new().and_then(|instance| instance.devices()) {
         Ok(devices) => devices,
         Err(e) => {
@@ -55,7 +55,8 @@ fn backends() -> Vec<Backend> {
         skip("no Vulkan device is usable");
         return Vec::new();
     };
-    let open = |ray_query| Backend { device: Device::open(device, ray_query).expect("the device opens"), ray_query };
+    let open =
+        |ray_query| Intersector { device: Device::open(device, ray_query).expect("the device opens"), ray_query };
     let mut backends = vec![open(false)];
     if std::env::var_os(WITHOUT_RAY_QUERY).is_some() {
         assert!(!device.ray_query, "{} was said to have no ray query", device.driver);
@@ -68,7 +69,7 @@ fn backends() -> Vec<Backend> {
 }
 
 /// Runs a test on every intersector, and sees that Vulkan had nothing to complain about.
-fn on_every_backend(test: impl Fn(&Backend)) {
+fn on_every_backend(test: impl Fn(&Intersector)) {
     for backend in backends() {
         test(&backend);
     }
