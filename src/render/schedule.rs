@@ -5,6 +5,9 @@ use crate::film::{Batch, Tile};
 /// Samples (over all pixels) of the first batch: little enough for any device.
 pub(super) const FIRST_BUDGET: u64 = 64 * 64;
 
+/// Groups of one batch: as many workgroups as every Vulkan device takes along an axis.
+const MAX_GROUPS: u64 = 65_535;
+
 /// How many samples the next batch may hold, after one of `samples` took `seconds`: less at once if that was too long, else at
 /// most four times as many. A small batch (the rest of a pass) that took little says nothing against the present budget.
 pub(super) fn next_budget(budget: u64, samples: u64, seconds: f64, target: f64) -> u64 {
@@ -79,7 +82,7 @@ impl Schedule {
         let pixels = u64::from(self.width) * u64::from(self.height);
         let fitting = (budget / (pixels * u64::from(group))).min(max_sums / pixels).max(1);
         // Up to 16 the groups grow: only the first two are of equal length.
-        let equal = if start < 16 { if start == 0 { 2 } else { 1 } } else { u64::from(u32::MAX) };
+        let equal = if start < 16 { if start == 0 { 2 } else { 1 } } else { MAX_GROUPS };
         let end = u64::from(start) + fitting.min(equal) * u64::from(group);
         end.min(u64::from(self.spp)) as u32
     }
@@ -103,6 +106,13 @@ mod tests {
         assert!(passes.iter().all(|b| b.tile.pixels() == 4096));
         let ranges: Vec<_> = passes.iter().map(|b| b.samples.clone()).collect();
         assert_eq!(ranges, [0..2, 2..4, 4..8, 8..16, 16..496, 496..976, 976..1000]);
+    }
+
+    #[test]
+    fn a_single_pixel_stays_within_the_dispatch_limit() {
+        let mut schedule = Schedule::new((1, 1), u32::MAX);
+        schedule.pass.end = 16;
+        assert_eq!(schedule.next(1 << 40, 1 << 30).map(|b| b.groups()), Some(65_535));
     }
 
     #[test]
