@@ -5,7 +5,7 @@ use crate::common::statistics::*;
 use glam::{Affine3A, DVec3, Mat3, Vec3};
 use luminaire::reference::Reference;
 use luminaire::reference::surfel::Surfel;
-use luminaire::sampling::random4;
+use luminaire::sampling::{random4, uniform};
 use luminaire::scene::{Luminaire, Mesh, Scene};
 use std::f64::consts::PI;
 
@@ -160,6 +160,30 @@ fn blockers_between_shadow_and_blockers_behind_do_not() {
     assert!((irradiance(&Reference::new(&lit_from_infinity), 0.25, 0.5, 1).mean - 1.0).abs() < 1e-12);
     add(&mut lit_from_infinity, slab(1e7), matte(Vec3::ZERO), Affine3A::IDENTITY);
     assert_eq!(irradiance(&Reference::new(&lit_from_infinity), 0.25, 0.5, 1).mean, 0.0);
+}
+
+/// Both ends of a shadow ray are rounded: a millimetre is not too short at a distance of a thousand kilometres.
+#[test]
+fn short_shadow_rays_far_from_the_origin() {
+    let place = Affine3A::from_translation(Vec3::new(1e6, -1e6, 1e6)) * Affine3A::from_rotation_x(0.7);
+    let mut scene = empty(1, 1);
+    let panel = |height: f32| quad(Vec3::new(-1.0, height, -1.0), Vec3::X * 2.0, Vec3::Z * 2.0);
+    add(&mut scene, panel(0.0), matte(Vec3::splat(0.5)), place);
+    add(&mut scene, panel(1e-3), lamp(Vec3::ONE), place);
+    let tracer = Reference::new(&scene);
+    let at = |x: f32, y: f32, z: f32| {
+        place.matrix3.as_dmat3() * Vec3::new(x, y, z).as_dvec3() + place.translation.as_dvec3()
+    };
+    for i in 0..1000 {
+        let random = random4(0, i, 1, 5);
+        let [x, z] = [random[0], random[1]].map(|r| uniform(r) as f32 * 1.8 - 0.9);
+        let (from, down) = (at(x, 5e-4, z), at(x, 0.0, z) - at(x, 5e-4, z));
+        let hit = tracer.closest_hit(from, down, f64::INFINITY).expect("the floor");
+        assert_eq!(hit.object, 0);
+        let surfel = tracer.surfel(&hit, -down.normalize());
+        let light = tracer.direct_light(&surfel, -down.normalize(), random4(0, i, 3, 5), &mut 0);
+        assert!(light.x > 0.0, "the lamp or the floor shadows itself at ({x}, {z})");
+    }
 }
 
 /// A shadow ray is counted where light could arrive, and only there.

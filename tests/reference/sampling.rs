@@ -161,6 +161,20 @@ fn scatter_weights_match_the_albedo() {
     assert_eq!(survival(&flat_surfel(0.0, 0.0, 0.0)), 0.0);
 }
 
+/// Directions are distributed about the shading normal: a cap of cosines above 0.9 around it, all of it above the surface, gets
+/// `1 - 0.9^2` of them.
+#[test]
+fn scatter_is_about_the_shading_normal() {
+    let normal = DVec3::new(0.6, 0.0, 0.8);
+    let tilted = Surfel { shading_normal: normal, ..flat_surfel(0.5, 0.0, 0.0) };
+    let in_cap = (0..N).map(|i| {
+        let random = random4(i, 0, 9, 4);
+        let (wi, weight) = scatter(&tilted, DVec3::Z, uniform(random[0]), uniform(random[1]));
+        if wi.dot(normal) > 0.9 { weight.x } else { 0.0 }
+    });
+    Estimate::new(in_cap).assert_is(0.5 * (1.0 - 0.81), 4e-3);
+}
+
 /// Light may go either way, and nothing is scattered to the far side of either normal.
 #[test]
 fn bsdf_is_reciprocal_and_one_sided() {

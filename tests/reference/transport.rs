@@ -5,9 +5,12 @@ use crate::common::statistics::*;
 use glam::{Affine3A, DVec3, Vec3};
 use luminaire::film::{Batch, PixelSum, Tile};
 use luminaire::reference::Reference;
+use luminaire::reference::warp::{cosine_hemisphere, uniform_triangle};
 use luminaire::render::Tracer;
-use luminaire::scene::{Integrator, Luminaire, Material, Scene};
+use luminaire::sampling::{random4, uniform};
+use luminaire::scene::{Integrator, Luminaire, LuminaireTable, Material, SampledLuminaire, Scene};
 use rayon::prelude::*;
+use std::f64::consts::PI;
 
 /// A closed shell around the sensor that emits 1.
 fn furnace(albedo: Vec3) -> Scene {
@@ -71,6 +74,60 @@ fn point_luminaire_in_a_sphere() {
     for estimate in means(&scene, 800) {
         estimate.assert_within(h, h.powi(-2), 3e-3);
     }
+}
+
+/// Which random number decides what: two bounces in a shell with two lamps, step by step.
+#[test]
+fn random_numbers_decide_what_the_table_says() {
+    let mut scene = empty(16, 16);
+    add(&mut scene, icosphere(2), matte(Vec3::new(0.5, 0.6, 0.7)), Affine3A::IDENTITY);
+    for (x, light) in [(0.25, Vec3::new(3.0, 2.0, 1.0)), (-0.5, Vec3::new(1.0, 1.0, 4.0))] {
+        let place = Affine3A::from_translation(Vec3::new(x, 0.0, -0.5)) * Affine3A::from_scale(Vec3::splat(0.2));
+        add(&mut scene, mesh(vec![Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]]), lamp(light), place);
+    }
+    scene.integrator = Integrator::Path { max_bounces: Some(1) };
+    let table = LuminaireTable::new(&scene);
+    let (mut lit, mut second) = (0, 0);
+    for seed in [0, 77] {
+        scene.settings.seed = seed;
+        let tracer = Reference::new(&scene);
+        for (pixel, sample) in (0..1024).map(|i| (i % 256, 3 * i)) {
+            let numbers = |block: u32| random4(pixel, sample, block, seed);
+            let (mut origin, mut direction) = tracer.sensor_ray(pixel, sample);
+            let (mut expected, mut throughput) = (DVec3::ZERO, DVec3::ONE);
+            for bounce in [0, 1] {
+                let hit = tracer.closest_hit(origin, direction, f64::INFINITY).expect("a closed shell");
+                let surfel = tracer.surfel(&hit, -direction);
+                if bounce == 0 {
+                    expected += surfel.emission;
+                }
+                let light = numbers(1 + 2 * bounce);
+                let chosen = table.choice.choose(light[0]);
+                let SampledLuminaire::Area(triangle) = &table.entries[chosen] else { panic!("lamps only") };
+                let weights = uniform_triangle(uniform(light[1]), uniform(light[2]));
+                let point: DVec3 = (0..3).map(|i| weights[i] * triangle.vertices[i]).sum();
+                let d = point - surfel.position;
+                let cosines = d.normalize().dot(surfel.geometric_normal).max(0.0) * d.normalize().z.abs();
+                if !tracer.occluded(point - 0.999 * d, d, 0.998) {
+                    let share = cosines * triangle.area() / d.length_squared() / table.choice.pdf[chosen];
+                    expected += throughput * surfel.lambert / PI * triangle.emission.as_dvec3() * share;
+                    lit += 1;
+                }
+                let survival = surfel.lambert.max_element();
+                if uniform(light[3]) >= survival {
+                    break;
+                }
+                let turn = numbers(2 + 2 * bounce);
+                direction = cosine_hemisphere(surfel.shading_normal, uniform(turn[0]), uniform(turn[1]));
+                origin = surfel.offset_ray_origin(direction);
+                throughput *= surfel.lambert / survival;
+                second += bounce;
+            }
+            let (found, _) = tracer.radiance(pixel, sample);
+            assert!((found - expected).length() <= 1e-12 * expected.length(), "{found} instead of {expected}");
+        }
+    }
+    assert!(lit > 2000 && second > 500, "{lit} and {second}: the test tests little");
 }
 
 /// The simple ray tracer: emission, direct light and the ambient term; one ray and one shadow ray.
