@@ -2,6 +2,8 @@
 # Compiles shaders/*.comp into OUT (default: shaders/spirv, which is shipped), once for each intersector, with glslc.
 # usage: build-shaders.sh [OUT]
 set -euo pipefail
+# The order of the files below must not depend on the language.
+export LC_ALL=C
 cd "$(dirname "$0")/.."
 out=${1:-shaders/spirv}
 command -v glslc >/dev/null || { echo "glslc is missing: on Debian and Ubuntu, apt-get install glslc" >&2; exit 1; }

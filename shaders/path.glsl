@@ -9,11 +9,11 @@ struct Path {
 };
 
 Path camera_path(uvec2 pixel, uint pixel_index, uint sample_index) {
-    uvec4 random = random4(pixel_index, sample_index, SENSOR_BLOCK, frame.seed);
-    return Path(frame.position.xyz, sensor_direction(pixel, uniform2(random.xy)), vec3(1.0), vec3(0.0), 0u);
+    return Path(frame.position.xyz, sensor_ray(pixel, pixel_index, sample_index), vec3(1.0), vec3(0.0), 0u);
 }
 
-// Traces the path's ray and whatever happens at the surface it meets. Returns false when the path has ended.
+// Traces the path's ray and whatever happens at the surface it meets: once through the loop of `radiance` in the reference.
+// Returns false when the path has ended.
 bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uint rays) {
     Hit hit;
     rays++;
@@ -31,12 +31,11 @@ bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uin
     if (SIMPLE || path.bounce == frame.max_bounces) return false;
 
     // Extinction; the survivor carries the weight of those that did not.
-    float survival = material.lambert.w;
-    if (uniform1(random.w) >= survival) return false;
+    float alive = survival(material);
+    if (uniform1(random.w) >= alive) return false;
     uvec4 turn = random4(pixel_index, sample_index, scatter_block(path.bounce), frame.seed);
-    vec3 wi = cosine_direction(s, uniform2(turn.xy));
-    // f cos / pdf with pdf = cos / pi.
-    path.throughput *= bsdf(s, material, wo, wi) * (PI / survival);
+    vec3 wi;
+    path.throughput *= scatter(s, material, wo, uniform2(turn.xy), wi) / alive;
     if (path.throughput == vec3(0.0)) return false;
     path.origin = offset_ray_origin(s.position, s.position_error, s.geometric_normal, wi);
     path.direction = wi;

@@ -15,7 +15,7 @@ layout(local_size_x = 64) in;
 #include "scatter.glsl"
 #include "luminaire.glsl"
 
-// Which function; the numbers are those of `Probe` in src/gpu/probe.rs.
+// Which function; the numbers are those of `Function` in src/gpu/probe.rs.
 layout(push_constant, std430) uniform Call {
     uint function;
     uint count;

@@ -11,5 +11,11 @@ vec3 bsdf(Surfel s, Material material, vec3 wo, vec3 wi) {
     return f;
 }
 
-// MonteCarloHemisphereVector: density cos / pi about the shading normal.
-vec3 cosine_direction(Surfel s, vec2 u) { return from_frame(s.shading_normal, cosine_hemisphere(u)); }
+// The probability that a path goes on: one minus the extinction coefficient, for the channel that loses least.
+float survival(Material material) { return material.lambert.w; }
+
+// A direction with density cos / pi about the shading normal (MonteCarloHemisphereVector), and its weight f cos / pdf.
+vec3 scatter(Surfel s, Material material, vec3 wo, vec2 u, out vec3 wi) {
+    wi = from_frame(s.shading_normal, cosine_hemisphere(u));
+    return PI * bsdf(s, material, wo, wi);
+}

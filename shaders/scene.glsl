@@ -53,6 +53,7 @@ struct Luminaire {
     vec4 a;            // point: position; infinite: unit vector towards the light; area: first corner
     vec4 b;            // area: second corner; w: area
     vec4 c;            // area: third corner; w: bound on the error of a point on the triangle, in each coordinate
+    vec4 normal;       // area: unit normal
     vec4 radiance;     // intensity, irradiance or radiance; w: probability of being chosen
     uint kind;
     uint threshold;    // alias table

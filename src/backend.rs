@@ -117,8 +117,8 @@ fn open_reference(scene: &Scene, why: String, notice: bool) -> Opened {
 }
 
 /// The backend that is the faster one on a device, and why.
-fn preferred(device: &PhysicalDevice) -> (Backend, &'static str) {
-    match (device.ray_query, device.is_software()) {
+fn preferred(ray_query: bool, software: bool) -> (Backend, &'static str) {
+    match (ray_query, software) {
         (true, false) => (Backend::RayQuery, "the GPU offers ray queries"),
         (true, true) => {
             (Backend::ComputeBvh, "a software device, on which our BVH is faster than the driver's ray queries")
@@ -128,29 +128,32 @@ fn preferred(device: &PhysicalDevice) -> (Backend, &'static str) {
 }
 
 /// How much we would like to run on a device: GPUs before software, discrete before integrated, ray queries first.
-fn rank(device: &PhysicalDevice) -> (u8, bool) {
+fn rank(device_type: ash::vk::PhysicalDeviceType, ray_query: bool) -> (u8, bool) {
     use ash::vk::PhysicalDeviceType as Type;
-    let kind = match device.device_type {
+    let kind = match device_type {
         Type::DISCRETE_GPU => 4,
         Type::INTEGRATED_GPU => 3,
         Type::VIRTUAL_GPU => 2,
         Type::CPU => 0,
         _ => 1,
     };
-    (kind, device.ray_query)
+    (kind, ray_query)
 }
 
 /// The device and backend for a request.
 fn choose<'a>(devices: &'a [PhysicalDevice], request: &Request) -> Result<(&'a PhysicalDevice, Backend, String)> {
     let wants_ray_query = request.backend == Some(Backend::RayQuery);
     let device = match &request.device {
-        Some(wanted) => find(devices, wanted)?,
+        Some(wanted) => {
+            let names: Vec<&str> = devices.iter().map(|d| d.name.as_str()).collect();
+            &devices[find(&names, wanted)?]
+        }
         None => devices
             .iter()
             .filter(|d| d.usable().is_ok() && (d.ray_query || !wants_ray_query))
             // The first of the best, in the loader's order.
             .rev()
-            .max_by_key(|d| rank(d))
+            .max_by_key(|d| rank(d.device_type, d.ray_query))
             .ok_or_else(|| {
                 let found: Vec<String> = devices.iter().map(|d| d.name.clone()).collect();
                 let found = if found.is_empty() { "there is no device at all".into() } else { found.join(", ") };
@@ -173,29 +176,28 @@ fn choose<'a>(devices: &'a [PhysicalDevice], request: &Request) -> Result<(&'a P
     Ok(match request.backend {
         Some(backend) => (device, backend, "as asked".into()),
         None => {
-            let (backend, why) = preferred(device);
+            let (backend, why) = preferred(device.ray_query, device.is_software());
             (device, backend, why.into())
         }
     })
 }
 
-/// The device with this index, or whose name contains this text (without regard to case).
-fn find<'a>(devices: &'a [PhysicalDevice], wanted: &str) -> Result<&'a PhysicalDevice> {
-    let list = || devices.iter().map(|d| format!("  {}: {}", d.index, d.name)).collect::<Vec<_>>().join("\n");
-    if let Ok(index) = wanted.parse::<usize>() {
-        return devices
-            .get(index)
-            .ok_or_else(|| Error::NoDevice(format!("there is no device {index}; there are\n{}", list())));
+/// Which of the devices has this index, or a name that contains this text (without regard to case).
+fn find(names: &[&str], wanted: &str) -> Result<usize> {
+    if let Ok(index) = wanted.parse::<usize>()
+        && index < names.len()
+    {
+        return Ok(index);
     }
     let lower = wanted.to_lowercase();
-    let mut found = devices.iter().filter(|d| d.name.to_lowercase().contains(&lower));
-    match (found.next(), found.next()) {
-        (Some(device), None) => Ok(device),
-        (Some(_), Some(_)) => {
-            Err(Error::NoDevice(format!("several devices are called like `{wanted}`: give an index\n{}", list())))
-        }
-        _ => Err(Error::NoDevice(format!("no device is called like `{wanted}`; there are\n{}", list()))),
-    }
+    let mut found = names.iter().enumerate().filter(|(_, name)| name.to_lowercase().contains(&lower));
+    let problem = match (found.next(), found.next()) {
+        (Some((index, _)), None) => return Ok(index),
+        (Some(_), Some(_)) => format!("several devices are called like `{wanted}`: give an index"),
+        _ => format!("no device has the index or a name like `{wanted}`; there are"),
+    };
+    let list: String = names.iter().enumerate().map(|(index, name)| format!("\n  {index}: {name}")).collect();
+    Err(Error::NoDevice(problem + &list))
 }
 
 /// Every Vulkan device of this machine.
@@ -208,7 +210,7 @@ pub fn devices() -> Result<Vec<DeviceReport>> {
     Ok(devices
         .iter()
         .map(|d| {
-            let (backend, why) = preferred(d);
+            let (backend, why) = preferred(d.ray_query, d.is_software());
             DeviceReport {
                 index: d.index,
                 name: d.name.clone(),
@@ -222,4 +224,43 @@ pub fn devices() -> Result<Vec<DeviceReport>> {
             }
         })
         .collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ash::vk::PhysicalDeviceType as Type;
+
+    #[test]
+    fn ray_query_where_a_gpu_offers_it_and_the_bvh_elsewhere() {
+        assert_eq!(preferred(true, false).0, Backend::RayQuery);
+        assert_eq!(preferred(false, false).0, Backend::ComputeBvh);
+        assert_eq!(preferred(true, true).0, Backend::ComputeBvh);
+        assert_eq!(preferred(false, true).0, Backend::ComputeBvh);
+    }
+
+    #[test]
+    fn gpus_come_before_software_and_ray_queries_first() {
+        let order = [
+            rank(Type::CPU, false),
+            rank(Type::CPU, true),
+            rank(Type::VIRTUAL_GPU, true),
+            rank(Type::INTEGRATED_GPU, true),
+            rank(Type::DISCRETE_GPU, false),
+            rank(Type::DISCRETE_GPU, true),
+        ];
+        assert!(order.is_sorted());
+    }
+
+    #[test]
+    fn devices_are_found_by_index_and_by_name() {
+        let names = ["NVIDIA GeForce RTX 4090", "llvmpipe (LLVM 15)", "NVIDIA GeForce RTX 4070"];
+        assert_eq!(find(&names, "1").unwrap(), 1);
+        assert_eq!(find(&names, "LLVM").unwrap(), 1);
+        // No such index, but a part of a name.
+        assert_eq!(find(&names, "4090").unwrap(), 0);
+        assert!(find(&names, "nvidia").unwrap_err().to_string().contains("give an index\n  0: NVIDIA"));
+        assert_eq!(find(&names, "407").unwrap(), 2);
+        assert!(find(&names, "9").is_ok() && find(&names, "8").unwrap_err().to_string().contains("  1: llvmpipe"));
+    }
 }

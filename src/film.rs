@@ -88,6 +88,11 @@ impl Film {
     /// # Errors
     /// [`Error::Limit`] if it does not.
     pub fn check_size(width: u32, height: u32) -> Result<()> {
+        if u64::from(width) * u64::from(height) > u64::from(u32::MAX) {
+            return Err(Error::Usage(format!(
+                "{width} x {height} pixels are more than the 2^32 - 1 that have a number"
+            )));
+        }
         check_memory(width, height, available_memory())
     }
 

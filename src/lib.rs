@@ -14,7 +14,7 @@
 //! # From the lecture to the code
 //!
 //! What is here of the lecture "Raytracing" (R. Kuffner dos Anjos). Shaders are under `shaders/`; each function has a twin of
-//! the same name in [`mod@reference`].
+//! the same name in [`mod@reference`] (the loop of its `radiance` is split into `camera_path` and `extend_path`).
 //!
 //! | slide | system | shader | tests |
 //! |---|---|---|---|

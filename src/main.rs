@@ -12,8 +12,15 @@ fn main() -> ExitCode {
         cli::Command::Devices => cli::devices::run(),
         cli::Command::Inspect(options) => cli::inspect::run(&options.scene),
     };
-    done.unwrap_or_else(|error| {
+    let code = done.unwrap_or_else(|error| {
         cli::tell(&format!("error: {error}"));
         ExitCode::from(error.exit_code())
-    })
+    });
+    match luminaire::gpu::validation_messages() {
+        0 => code,
+        count => {
+            cli::tell(&format!("error: the Vulkan validation layer had {count} complaints; see above"));
+            ExitCode::FAILURE
+        }
+    }
 }

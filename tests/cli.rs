@@ -155,8 +155,20 @@ fn options_that_do_not_go_together() {
 #[test]
 fn a_film_beyond_memory() {
     let folder = Folder::new();
-    let words = ["render", "good.obj", "--backend", "cpu", "--width", "65536", "--height", "65536"];
-    folder.fails(&words, 1, &["65536 x 65536", "GiB", "--width"]);
+    let size = |height| ["render", "good.obj", "--backend", "cpu", "--width", "65536", "--height", height];
+    folder.fails(&size("65535"), 1, &["65536 x 65535", "GiB", "--width"]);
+    folder.fails(&size("65536"), 2, &["65536 x 65536", "2^32"]);
+}
+
+#[test]
+fn a_pipe_as_a_material_library() {
+    let folder = Folder::new();
+    let made = Command::new("mkfifo").arg(folder.path().join("pipe.mtl")).status().unwrap();
+    assert!(made.success());
+    folder.write("pipe.obj", "mtllib pipe.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    // It does not wait for somebody to write into the pipe.
+    let output = folder.luminaire(&["inspect", "pipe.obj"]).output().unwrap();
+    assert!(output.status.success() && String::from_utf8_lossy(&output.stdout).contains("not a regular file"));
 }
 
 #[test]

@@ -1,13 +1,16 @@
 //! Bottom-level acceleration structures of the meshes and a top-level one of the objects.
 
+use crate::Result;
 use crate::bvh::MeshBvh;
 use crate::gpu::layout::Object;
 use crate::gpu::{Buffer, Device, TexelBuffer, barrier, submit};
 use crate::scene::Scene;
-use crate::{Error, Result};
 use ash::vk;
 use gpu_allocator::MemoryLocation;
 use std::sync::Arc;
+
+/// What to do where a scene is too large for the driver.
+const ADVICE: &str = "split the scene, or use --backend compute-bvh or cpu";
 
 /// An acceleration structure and the buffer it lives in.
 struct Structure {
@@ -37,17 +40,17 @@ impl TopLevel {
     ) -> Result<Self> {
         // 24 bits hold the object's index in an instance.
         let most_objects = device.max_instances.min(1 << 24);
-        check(
-            device,
+        device.check_limit(
             "the top-level acceleration structure",
             objects.len() as u64,
             most_objects,
             "objects (maxInstanceCount)",
+            ADVICE,
         )?;
         let mut bottom = Vec::with_capacity(meshes.len());
         for (mesh, place) in scene.meshes.iter().zip(meshes) {
             let count = place.order.len() as u64;
-            check(device, &mesh.name, count, device.max_primitives, "triangles (maxPrimitiveCount)")?;
+            device.check_limit(&mesh.name, count, device.max_primitives, "triangles (maxPrimitiveCount)", ADVICE)?;
             let address = triangles.buffer.address() + u64::from(place.triangle_offset) * 48;
             // Every corner is 16 bytes, the last four of which are not a coordinate; three make a triangle, without indices.
             let data = vk::AccelerationStructureGeometryTrianglesDataKHR::default()
@@ -101,19 +104,6 @@ fn instance_record(rows: &[[f32; 4]; 3], index: u32, address: u64) -> [u8; 64] {
     record[52..56].copy_from_slice(&flags.to_ne_bytes());
     record[56..].copy_from_slice(&address.to_ne_bytes());
     record
-}
-
-fn check(device: &Device, what: &str, needed: u64, limit: u64, unit: &str) -> Result<()> {
-    if needed <= limit {
-        return Ok(());
-    }
-    Err(Error::Limit {
-        what: what.into(),
-        needed: format!("{needed}"),
-        device: device.name.clone(),
-        limit: format!("{limit} {unit}"),
-        advice: "split the scene, or use --backend compute-bvh or cpu".into(),
-    })
 }
 
 impl Structure {

@@ -1,7 +1,7 @@
 //! The software BVH, built by the `obvhs` crate: an eight-wide compressed BVH a mesh, and one over the instances.
 //!
 //! The box test of the kernel rounds, so every leaf box is padded by eight units in the last place of the largest coordinate:
-//! with that, no ray aimed at a shared edge or vertex was ever seen to slip through (`tests/intersection.rs`).
+//! with that, no ray aimed at a shared edge or vertex was ever seen to slip through (`tests/gpu/intersection.rs`).
 
 mod order;
 

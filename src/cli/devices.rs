@@ -12,7 +12,6 @@ Install the Vulkan loader and a driver. A GPU needs its vendor's driver or Mesa;
   Debian 12                 the same from bookworm-backports (the plain package has no ray query); `make setup` does it
   Fedora                    dnf install vulkan-loader mesa-vulkan-drivers
   Arch Linux                pacman -S vulkan-icd-loader vulkan-swrast
-  macOS                     MoltenVK, from the Vulkan SDK
   Windows                   the GPU vendor's driver
 Until then `luminaire render` uses the CPU reference.";
 

@@ -164,8 +164,8 @@ fn seconds(text: &str) -> Result<f64, String> {
 
 fn stops(text: &str) -> Result<f32, String> {
     match text.parse::<f32>() {
-        Ok(stops) if stops.abs() <= 100.0 => Ok(stops),
-        _ => Err("expected a number of stops from -100 to 100, for example 1.5".into()),
+        Ok(stops) if stops.abs() <= 64.0 => Ok(stops),
+        _ => Err("expected a number of stops from -64 to 64, for example 1.5".into()),
     }
 }
 

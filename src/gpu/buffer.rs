@@ -80,6 +80,10 @@ impl Buffer {
             commands::submit(device, "upload", |cmd| {
                 // SAFETY: both buffers are alive, and the ranges lie inside them.
                 unsafe { device.raw.cmd_copy_buffer(cmd, staging.raw, buffer.raw, &copy) };
+                // To whatever reads it in later submissions: shaders, uniform fetches, builds of acceleration structures.
+                let written = (vk::PipelineStageFlags::TRANSFER, vk::AccessFlags::TRANSFER_WRITE);
+                let any = (vk::PipelineStageFlags::ALL_COMMANDS, vk::AccessFlags::MEMORY_READ);
+                commands::barrier(device, cmd, written, any);
             })?;
         }
         Ok(buffer)
@@ -89,15 +93,8 @@ impl Buffer {
     /// (some drivers drop what lies beyond without a word).
     pub(crate) fn storage<T: Pod>(device: &Arc<Device>, name: &str, data: &[T]) -> Result<Self> {
         let (needed, limit) = (size_of_val(data) as u64, u64::from(device.limits.max_storage_buffer_range));
-        if needed > limit {
-            return Err(Error::Limit {
-                what: name.into(),
-                needed: format!("{needed} bytes"),
-                device: device.name.clone(),
-                limit: format!("{limit} bytes (maxStorageBufferRange)"),
-                advice: "use fewer objects, materials or luminaires, another device, or --backend cpu".into(),
-            });
-        }
+        let advice = "use fewer objects, materials or luminaires, another device, or --backend cpu";
+        device.check_limit(name, needed, limit, "bytes (maxStorageBufferRange)", advice)?;
         Self::upload(device, name, data, vk::BufferUsageFlags::STORAGE_BUFFER)
     }
 
@@ -126,12 +123,12 @@ impl Drop for Buffer {
         if self.device.is_hung() {
             return;
         }
+        // SAFETY: every submission waits for its end before it returns, so the device no longer uses the buffer.
+        unsafe { self.device.raw.destroy_buffer(self.raw, None) };
         if let Some(allocation) = self.allocation.take() {
             // A failure to free can only be a bug of the allocator; there is nobody to tell in a drop.
             let _ = self.device.allocator().free(allocation);
         }
-        // SAFETY: every submission waits for its end before it returns, so the device no longer uses the buffer.
-        unsafe { self.device.raw.destroy_buffer(self.raw, None) };
     }
 }
 
@@ -150,15 +147,8 @@ impl TexelBuffer {
         usage: vk::BufferUsageFlags,
     ) -> Result<Self> {
         let (needed, limit) = (size_of_val(data) as u64 / 16, u64::from(device.limits.max_texel_buffer_elements));
-        if needed > limit {
-            return Err(Error::Limit {
-                what: name.into(),
-                needed: format!("{needed} texels"),
-                device: device.name.clone(),
-                limit: format!("{limit} texels (maxTexelBufferElements)"),
-                advice: "split the scene into instances of smaller meshes, use another device, or --backend cpu".into(),
-            });
-        }
+        let advice = "split the scene into instances of smaller meshes, use another device, or --backend cpu";
+        device.check_limit(name, needed, limit, "texels (maxTexelBufferElements)", advice)?;
         let buffer = Buffer::upload(device, name, data, usage | vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER)?;
         let info = vk::BufferViewCreateInfo::default()
             .buffer(buffer.raw)

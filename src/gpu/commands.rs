@@ -46,7 +46,7 @@ pub(crate) fn submit(device: &Arc<Device>, name: &str, record: impl FnOnce(vk::C
         device.set_name(submission.pool, name);
         submission.fence = raw.create_fence(&Default::default(), None).map_err(|e| device.error("vkCreateFence", e))?;
         device.set_name(submission.fence, name);
-        if device.timestamps {
+        if device.timestamp_mask != 0 {
             let query_info = vk::QueryPoolCreateInfo::default().query_type(vk::QueryType::TIMESTAMP).query_count(2);
             submission.queries =
                 raw.create_query_pool(&query_info, None).map_err(|e| device.error("vkCreateQueryPool", e))?;
@@ -61,12 +61,12 @@ pub(crate) fn submit(device: &Arc<Device>, name: &str, record: impl FnOnce(vk::C
         device.set_name(cmd, name);
         let begin = vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
         raw.begin_command_buffer(cmd, &begin).map_err(|e| device.error("vkBeginCommandBuffer", e))?;
-        if device.timestamps {
+        if device.timestamp_mask != 0 {
             raw.cmd_reset_query_pool(cmd, submission.queries, 0, 2);
             raw.cmd_write_timestamp(cmd, vk::PipelineStageFlags::TOP_OF_PIPE, submission.queries, 0);
         }
         record(cmd);
-        if device.timestamps {
+        if device.timestamp_mask != 0 {
             raw.cmd_write_timestamp(cmd, vk::PipelineStageFlags::BOTTOM_OF_PIPE, submission.queries, 1);
         }
         raw.end_command_buffer(cmd).map_err(|e| device.error("vkEndCommandBuffer", e))?;
@@ -83,7 +83,7 @@ pub(crate) fn submit(device: &Arc<Device>, name: &str, record: impl FnOnce(vk::C
             }
             return Err(device.error("vkWaitForFences", e));
         }
-        if !device.timestamps {
+        if device.timestamp_mask == 0 {
             return Ok(None);
         }
         let mut ticks = [0u64; 2];
@@ -95,7 +95,8 @@ pub(crate) fn submit(device: &Arc<Device>, name: &str, record: impl FnOnce(vk::C
         )
         .map_err(|e| device.error("vkGetQueryPoolResults", e))?;
         let period = f64::from(device.limits.timestamp_period);
-        Ok(Some(ticks[1].saturating_sub(ticks[0]) as f64 * period * 1e-9))
+        let elapsed = ticks[1].wrapping_sub(ticks[0]) & device.timestamp_mask;
+        Ok(Some(elapsed as f64 * period * 1e-9))
     }
 }
 

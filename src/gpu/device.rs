@@ -18,7 +18,8 @@ pub struct Device {
     pub(super) queue_family: u32,
     acceleration_structure: Option<khr::acceleration_structure::Device>,
     debug_utils: Option<ext::debug_utils::Device>,
-    pub(super) timestamps: bool,
+    /// Which bits of a timestamp count; none without timestamps.
+    pub(super) timestamp_mask: u64,
     hung: AtomicBool,
     pub(crate) limits: vk::PhysicalDeviceLimits,
     pub(crate) scratch_alignment: u64,
@@ -95,7 +96,7 @@ impl Device {
             allocator: ManuallyDrop::new(Mutex::new(allocator)),
             queue: Mutex::new(queue),
             queue_family,
-            timestamps: physical.timestamps,
+            timestamp_mask: physical.timestamp_mask,
             hung: AtomicBool::new(false),
             limits: physical.limits,
             scratch_alignment: physical.scratch_alignment,
@@ -139,6 +140,20 @@ impl Device {
         Error::Vulkan { call, device: self.name.clone(), reason: explain(result) }
     }
 
+    /// Refuses what is beyond a limit of the device; `unit` is the unit and the limit's Vulkan name.
+    pub(crate) fn check_limit(&self, what: &str, needed: u64, limit: u64, unit: &str, advice: &str) -> Result<()> {
+        if needed <= limit {
+            return Ok(());
+        }
+        Err(Error::Limit {
+            what: what.into(),
+            needed: needed.to_string(),
+            device: self.name.clone(),
+            limit: format!("{limit} {unit}"),
+            advice: advice.into(),
+        })
+    }
+
     /// Gives an object a name for debuggers and validation messages.
     pub(crate) fn set_name(&self, handle: impl vk::Handle, name: &str) {
         let Some(debug) = &self.debug_utils else { return };
@@ -152,6 +167,8 @@ impl Device {
 impl Drop for Device {
     fn drop(&mut self) {
         if self.is_hung() {
+            // The instance must not go before its devices either.
+            std::mem::forget(self._instance.clone());
             return;
         }
         // SAFETY: every buffer, kernel and structure holds an `Arc` of this device, so none is left, and each waited for its

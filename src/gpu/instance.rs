@@ -8,6 +8,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Our minimum: buffer device address and SPIR-V 1.5 are part of it.
 pub(crate) const API_VERSION: u32 = vk::API_VERSION_1_2;
+/// Storage buffers that the kernel binds.
+const STORAGE_BUFFERS: u32 = 5;
 const VALIDATION_LAYER: &CStr = c"VK_LAYER_KHRONOS_validation";
 
 static VALIDATION_MESSAGES: AtomicUsize = AtomicUsize::new(0);
@@ -48,7 +50,7 @@ pub struct PhysicalDevice {
     /// Bytes of the largest device-local heap.
     pub memory: u64,
     pub(super) queue_family: Option<u32>,
-    pub(super) timestamps: bool,
+    pub(super) timestamp_mask: u64,
     pub(super) limits: vk::PhysicalDeviceLimits,
     pub(super) scratch_alignment: u64,
     pub(super) max_instances: u64,
@@ -142,7 +144,8 @@ impl Instance {
         };
         // SAFETY: the instance is alive.
         let raw = unsafe { self.raw.enumerate_physical_devices() }.map_err(failed)?;
-        raw.into_iter().enumerate().map(|(index, raw)| self.inspect(index, raw).map_err(failed)).collect()
+        // A device that does not even answer must not hide the others.
+        Ok(raw.into_iter().enumerate().filter_map(|(index, raw)| self.inspect(index, raw).ok()).collect())
     }
 
     fn inspect(self: &Arc<Self>, index: usize, raw: vk::PhysicalDevice) -> ash::prelude::VkResult<PhysicalDevice> {
@@ -183,6 +186,9 @@ impl Instance {
         let memory = unsafe { self.raw.get_physical_device_memory_properties(raw) };
 
         let queue_family = families.iter().position(|f| f.queue_flags.contains(vk::QueueFlags::COMPUTE));
+        let timestamp_bits = queue_family
+            .map(|f| families[f].timestamp_valid_bits)
+            .filter(|bits| *bits > 0 && limits.timestamp_period > 0.0);
         let text = |s: &[std::ffi::c_char]| {
             // SAFETY: Vulkan gives NUL-terminated strings in fixed arrays.
             unsafe { CStr::from_ptr(s.as_ptr()) }.to_string_lossy().into_owned()
@@ -217,8 +223,7 @@ impl Instance {
                 .max()
                 .unwrap_or(0),
             queue_family: queue_family.map(|f| f as u32),
-            timestamps: queue_family.is_some_and(|f| families[f].timestamp_valid_bits > 0)
-                && limits.timestamp_period > 0.0,
+            timestamp_mask: timestamp_bits.map_or(0, |bits| u64::MAX >> (64 - bits)),
             limits,
             scratch_alignment: u64::from(structures.min_acceleration_structure_scratch_offset_alignment).max(1),
             max_instances: structures.max_instance_count,
@@ -264,6 +269,10 @@ impl PhysicalDevice {
         if self.queue_family.is_none() {
             return Err("no queue that runs compute shaders".into());
         }
+        let storage_buffers = self.limits.max_per_stage_descriptor_storage_buffers;
+        if storage_buffers < STORAGE_BUFFERS {
+            return Err(format!("{storage_buffers} storage buffers in a shader only; {STORAGE_BUFFERS} are needed"));
+        }
         Ok(())
     }
 
@@ -278,7 +287,7 @@ impl PhysicalDevice {
             ("device memory".into(), format!("{:.1} GiB", self.memory as f64 / f64::from(1 << 30))),
             ("largest storage buffer".into(), format!("{} MiB", self.limits.max_storage_buffer_range >> 20)),
             ("largest texel buffer".into(), format!("{} texels", self.limits.max_texel_buffer_elements)),
-            ("timestamps".into(), yes(self.timestamps)),
+            ("timestamps".into(), yes(self.timestamp_mask != 0)),
         ]
     }
 }

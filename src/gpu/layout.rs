@@ -101,6 +101,8 @@ shared! {
         b: [f32; 4],
         /// Third corner; w: bound on the error of a point on the triangle, in each coordinate.
         c: [f32; 4],
+        /// Unit normal of the triangle; w unused.
+        normal: [f32; 4],
         /// Intensity, irradiance or radiance; w: probability of being chosen.
         radiance: [f32; 4],
         /// 0: point, 1: infinite, 2: area.

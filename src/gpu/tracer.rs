@@ -12,7 +12,7 @@ use crate::scene::{
     EmissiveTriangle, Integrator, Luminaire, LuminaireTable, Material, SampledLuminaire, Scene, Sensor, widen,
 };
 use ash::vk;
-use glam::{DMat3, DVec3, Vec3};
+use glam::{DAffine3, DMat3, DVec3, Vec3};
 use gpu_allocator::MemoryLocation;
 use std::sync::Arc;
 
@@ -203,11 +203,14 @@ fn luminaire(scene: &Scene, table: &LuminaireTable, index: usize) -> layout::Lum
             layout::Luminaire { a: vec4(-*direction, 0.0), radiance: vec4(*irradiance, pdf), kind: 1, ..entry }
         }
         SampledLuminaire::Area(triangle) => {
-            let [a, b, c] = triangle.vertices.map(|v| v.as_vec3());
+            let [a, b, c] = triangle.vertices;
+            let normal = (b - a).cross(c - a).normalize_or_zero();
+            let [a, b, c] = [a, b, c].map(|v| v.as_vec3());
             layout::Luminaire {
                 a: vec4(a, 0.0),
                 b: vec4(b, triangle.area()),
                 c: vec4(c, position_error(scene, triangle)),
+                normal: vec4(normal.as_vec3(), 0.0),
                 radiance: vec4(triangle.emission, pdf),
                 kind: 2,
                 ..entry
@@ -217,17 +220,24 @@ fn luminaire(scene: &Scene, table: &LuminaireTable, index: usize) -> layout::Lum
 }
 
 /// How far a point that the kernel computes on an emissive triangle can lie from the surface that rays meet, in each
-/// coordinate: rounding of the point itself, and of the transform into the object's space and back (compare
-/// `shaders/surfel.glsl`).
+/// coordinate: the bounds of `shaders/surfel.glsl`, taken over the whole triangle. They are the rounding of the point itself, of
+/// the triangle test (by the triangle's size, and the more the narrower it is), and of the transforms.
 fn position_error(scene: &Scene, triangle: &EmissiveTriangle) -> f64 {
     let gamma = |n: f64| n * f64::from(f32::EPSILON) * 0.5;
-    let largest = triangle.vertices.iter().fold(DVec3::ZERO, |m, v| m.max(v.abs()));
-    let mut error = gamma(11.0) * largest;
-    let to_world = widen(scene.objects[triangle.object as usize].object_to_world);
-    if to_world != glam::DAffine3::IDENTITY {
+    let absolute = |m: DMat3| DMat3::from_cols(m.x_axis.abs(), m.y_axis.abs(), m.z_axis.abs());
+    let object = &scene.objects[triangle.object as usize];
+    let mesh = &scene.meshes[object.mesh as usize];
+    let corners = mesh.triangles[triangle.triangle as usize].vertices.map(|v| mesh.positions[v as usize].as_dvec3());
+    let [a, b, c] = corners;
+    let size = ((b - a).abs() + (c - a).abs()).max_element();
+    let narrow = (size * size / (b - a).cross(c - a).abs().max_element()).min(256.0);
+    let to_world = widen(object.object_to_world);
+    let largest = |points: [DVec3; 3]| points.iter().fold(DVec3::ZERO, |m, v| m.max(v.abs()));
+    let mut error = gamma(4.0) * largest(triangle.vertices);
+    error += absolute(to_world.matrix3) * (gamma(7.0) * largest(corners) + gamma(4.0) * size * narrow);
+    if to_world != DAffine3::IDENTITY {
         let to_object = to_world.inverse();
-        let absolute = |m: DMat3| DMat3::from_cols(m.x_axis.abs(), m.y_axis.abs(), m.z_axis.abs());
-        let back = absolute(to_object.matrix3) * largest + to_object.translation.abs();
+        let back = absolute(to_object.matrix3) * largest(triangle.vertices) + to_object.translation.abs();
         error += gamma(8.0) * (absolute(to_world.matrix3) * back + to_world.translation.abs());
     }
     error.max_element()

@@ -2,8 +2,8 @@
 
 use crate::film::{Batch, Tile};
 
-/// Samples (over all pixels) of the first batch: little enough for any device.
-pub(super) const FIRST_BUDGET: u64 = 64 * 64;
+/// Samples (over all pixels) of the first batch: few, because each may be a path of ten thousand bounces.
+pub(super) const FIRST_BUDGET: u64 = 64;
 
 /// Groups of one batch: as many workgroups as every Vulkan device takes along an axis.
 const MAX_GROUPS: u64 = 65_535;

@@ -83,7 +83,7 @@ pub struct Object {
     pub material: Option<u32>,
 }
 
-/// The surface's scattering and emission: normalised Blinn-Phong (`READING` of the lecture's "Surface Element Class").
+/// The surface's scattering and emission: normalised Blinn-Phong (slide "Surface Element Class").
 ///
 /// `lambert + glossy <= 1` in every channel; the loader scales down what exceeds it and warns.
 #[derive(Debug, Clone, PartialEq)]

@@ -9,6 +9,11 @@ use std::path::Path;
 /// # Errors
 /// If the file cannot be read, is UTF-16, or holds a NUL byte (then it is binary or damaged).
 pub(super) fn read_text(path: &Path) -> Result<String> {
+    let about = std::fs::metadata(path).map_err(|e| Error::read(path, e))?;
+    if !about.is_file() {
+        // A pipe or a device may never end.
+        return Err(Error::read(path, if about.is_dir() { "it is a folder" } else { "it is not a regular file" }));
+    }
     let bytes = std::fs::read(path).map_err(|e| Error::read(path, e))?;
     if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
         return Err(Error::read(path, "it is UTF-16 text; save it as UTF-8"));

@@ -75,7 +75,7 @@ struct Disagreement {
     hits: usize,
     hit_or_miss: usize,
     other_triangle: usize,
-    /// Relative difference of t where both hit the same triangle: 99.9th percentile, and largest.
+    /// Difference of t where both hit the same triangle, relative to t and the size of the scene: 99.9th percentile, and largest.
     distance: [f64; 2],
 }
 
@@ -87,7 +87,7 @@ fn disagreement(found: &[Found], expected: &[Found]) -> Disagreement {
             (Some(f), Some(e)) => {
                 d.hits += 1;
                 // Two triangles at one place (a shared edge) are no disagreement.
-                let off = (f.0 - e.0).abs() / e.0;
+                let off = (f.0 - e.0).abs() / (e.0 + 1.0);
                 if (f.1, f.2) == (e.1, e.2) || off < 1e-6 {
                     distances.push(off);
                 } else {
@@ -137,8 +137,8 @@ fn instanced(rng: &mut StdRng) -> Scene {
     scene
 }
 
-/// Rays that graze no edge on purpose: at most 1 in 10 000 may differ. t agrees to 1e-4 in 999 of 1000; the rest are needles,
-/// slants, and triangles that nearly touch the origin.
+/// Rays that graze no edge on purpose: at most 1 in 10 000 may differ. t agrees to 1e-6 of itself and the size of the
+/// scene in 999 of 1000; the rest are slants.
 #[test]
 fn generic_rays_hit_what_brute_force_hits() {
     let mut rng = StdRng::seed_from_u64(11);
@@ -156,7 +156,7 @@ fn generic_rays_hit_what_brute_force_hits() {
             let d = disagreement(&probe_hits(backend, &scene, Function::ClosestHit, &rays), &expected);
             println!("{name}, {}, of {} rays: {d:?}", backend.name(), rays.len());
             assert!(d.hit_or_miss + d.other_triangle <= rays.len() / 10_000, "{name}, {}: {d:?}", backend.name());
-            assert!(d.distance[0] < 1e-4 && d.distance[1] < 1e-2, "{name}, {}: {d:?}", backend.name());
+            assert!(d.distance[0] < 1e-6 && d.distance[1] < 1e-4, "{name}, {}: {d:?}", backend.name());
 
             let shadows = Probe::new(&backend.device, &scene, backend.ray_query)
                 .and_then(|p| p.call(Function::Occluded, &rays.iter().map(Ray::call).collect::<Vec<_>>()))

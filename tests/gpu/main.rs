@@ -51,7 +51,9 @@ fn backends() -> Vec<Intersector> {
             return Vec::new();
         }
     };
-    let Some(device) = devices.iter().find(|d| d.usable().is_ok()) else {
+    // The one that a user gets.
+    let preferred = luminaire::backend::devices().expect("the devices were there").into_iter().find(|d| d.preferred);
+    let Some(device) = preferred.map(|d| &devices[d.index]) else {
         skip("no Vulkan device is usable");
         return Vec::new();
     };

@@ -68,6 +68,8 @@ fn one_bounce_equals_the_reference_pixel_by_pixel() {
             let count = differing(&found, &expected, 1e-4);
             println!("{name}, {}: {count} of {} pixels differ", backend.name(), found.len());
             assert!(count <= found.len() / 500, "{name}, {}: {count} pixels differ", backend.name());
+            let (a, b) = (mean(&found), mean(&expected));
+            assert!((a - b).abs().cmple(b * 1e-3).all(), "{name}, {}: means {a} and {b}", backend.name());
         });
     }
 }
@@ -87,6 +89,7 @@ fn full_paths_have_the_reference_s_distribution() {
             let (a, b) = (total(&found), total(&expected));
             let p_mean = two_sided((a.mean - b.mean) / a.error.hypot(b.error).max(1e-7 * b.mean));
             println!("{name}, {}: pixels p = {p:.3}, means {} and {} p = {p_mean:.3}", backend.name(), a.mean, b.mean);
+            assert!(a.error < 1e-2 * a.mean && b.error < 1e-2 * b.mean, "not sharp enough: {a:?} {b:?}");
             assert!(p >= SIGNIFICANCE, "{name}, {}: p = {p:e}", backend.name());
             assert!(p_mean >= SIGNIFICANCE, "{name}, {}: {a:?} {b:?}", backend.name());
         });
@@ -107,6 +110,7 @@ fn both_intersectors_give_one_picture() {
         assert!(count <= a.len() / 100, "{name}: {count} pixels differ");
         assert!((mean(&a) - mean(&b)).abs().cmple(mean(&a) * 2e-3).all(), "{name}: {} {}", mean(&a), mean(&b));
     }
+    assert_eq!(validation_messages(), 0, "the validation layer complained; see above");
 }
 
 /// `Le / (1 - a)` in a closed shell.
@@ -137,6 +141,36 @@ fn point_luminaire_in_a_sphere() {
         let image = render(&mut backend.tracer(&scene), 32, 32, 512, 16);
         total(&image).assert_within(1.0 - 5e-4, 1.0 + 1e-3, 3e-3);
     });
+}
+
+/// Lamps as narrow as a tube light or a finely cut sphere do not shadow themselves: at equal seeds the reference's light.
+#[test]
+fn narrow_lamps_do_not_shadow_themselves() {
+    for width in [1e-2f32, 1e-3, 1e-4] {
+        let mut scene = empty(32, 32);
+        scene.integrator = Integrator::Path { max_bounces: Some(0) };
+        scene.sensor.position = Vec3::new(0.0, 2.0, 3.0);
+        scene.sensor.target = Vec3::ZERO;
+        let floor = quad(Vec3::new(-2.0, 0.0, -2.0), Vec3::Z * 4.0, Vec3::X * 4.0);
+        add(&mut scene, floor, matte(Vec3::splat(0.5)), Affine3A::from_rotation_y(0.3));
+        let tilt =
+            Affine3A::from_translation(Vec3::Y) * Affine3A::from_rotation_x(0.5) * Affine3A::from_rotation_z(0.4);
+        let strip = quad(Vec3::new(-0.5, 0.0, -0.5 * width), Vec3::X, Vec3::Z * width);
+        for baked in [false, true] {
+            let mut scene = scene.clone();
+            let mut strip = strip.clone();
+            if baked {
+                strip.positions.iter_mut().for_each(|p| *p = tilt.transform_point3(*p));
+            }
+            add(&mut scene, strip, lamp(Vec3::ONE), if baked { Affine3A::IDENTITY } else { tilt });
+            let expected = mean(&pixels(&mut Reference::new(&scene), &scene, 16)).x;
+            on_every_backend(|backend| {
+                let found = mean(&pixels(&mut backend.tracer(&scene), &scene, 16)).x;
+                println!("width {width}, baked {baked}, {}: {:.2e}", backend.name(), found / expected - 1.0);
+                assert!((found / expected - 1.0).abs() < 2e-3, "width {width}, {}: {found} {expected}", backend.name());
+            });
+        }
+    }
 }
 
 /// Irradiance of a uniform triangle on a floor: Lambert's polygon formula, `E = Le / 2 * sum of angle_i * (n . normal_i)`.
