@@ -19,6 +19,9 @@ static STOP: AtomicBool = AtomicBool::new(false);
 /// True while there may be something to write after a Ctrl-C.
 static RENDERING: AtomicBool = AtomicBool::new(false);
 
+/// True while files are written, which an exit would leave half done beside their targets.
+static WRITING: AtomicBool = AtomicBool::new(false);
+
 /// The exit code of an interrupted run: 128 + SIGINT, as shells have it.
 const INTERRUPTED: u8 = 130;
 
@@ -96,17 +99,10 @@ fn finish(
     if black > 0 && !written.is_empty() {
         say(&format!("warning: {black} pixels have no sample and are black: the render ended during the first pass"));
     }
-    let start = Instant::now();
-    // Every file is tried: one that cannot be written must not cost the others.
-    let saved: Vec<_> =
-        written.iter().map(|path| image_io::save(path, &rendered.film, scene.settings.exposure)).collect();
-    saved.into_iter().collect::<Result<()>>()?;
-    seconds.write = start.elapsed().as_secs_f64();
-    if let Some(path) = &options.stats {
-        let stats = Stats::new(scene, opened, &rendered, seconds, written);
-        let text = serde_json::to_string_pretty(&stats).map_err(|e| Error::write(path, e))?;
-        image_io::save_text(path, &(text + "\n"))?;
-    }
+    WRITING.store(true, Ordering::SeqCst);
+    let done = write(options, scene, opened, &rendered, &mut seconds, written);
+    WRITING.store(false, Ordering::SeqCst);
+    done?;
     if !options.quiet {
         print(&summary(&rendered, seconds, written, options.stats.as_deref()))?;
     }
@@ -127,6 +123,29 @@ fn finish(
             Err(error)
         }
     }
+}
+
+/// Writes the pictures and the figures.
+fn write(
+    options: &RenderOptions,
+    scene: &Scene,
+    opened: &Opened,
+    rendered: &Rendered,
+    seconds: &mut Seconds,
+    written: &[PathBuf],
+) -> Result<()> {
+    let start = Instant::now();
+    // Every file is tried: one that cannot be written must not cost the others.
+    let saved: Vec<_> =
+        written.iter().map(|path| image_io::save(path, &rendered.film, scene.settings.exposure)).collect();
+    saved.into_iter().collect::<Result<()>>()?;
+    seconds.write = start.elapsed().as_secs_f64();
+    if let Some(path) = &options.stats {
+        let stats = Stats::new(scene, opened, rendered, *seconds, written);
+        let text = serde_json::to_string_pretty(&stats).map_err(|e| Error::write(path, e))?;
+        image_io::save_text(path, &(text + "\n"))?;
+    }
+    Ok(())
 }
 
 /// Where the files are, how long it took, and how fast it was.
@@ -232,6 +251,9 @@ fn apply(options: &RenderOptions, film: &mut FilmSettings, integrator: &mut Inte
 /// Ctrl-C and SIGTERM: the first ends the render at the next batch, a second (or one with nothing to write yet) the process.
 fn listen_for_interrupts(quiet: bool) -> Result<()> {
     ctrlc::set_handler(move || {
+        if WRITING.load(Ordering::SeqCst) {
+            return;
+        }
         let at_once = !RENDERING.load(Ordering::SeqCst) || STOP.swap(true, Ordering::SeqCst);
         if !quiet {
             tell(if at_once {

@@ -281,3 +281,23 @@ fn shading_normal_falls_back() {
     triangle.normals = vec![Vec3::new(-0.9, 0.0, 0.1).normalize(); 3];
     assert_eq!(normal(&triangle), DVec3::Z, "faces away from wo");
 }
+
+/// Numbers of neighbouring pixels, samples, blocks and seeds are independent: pairs fall evenly into 16 x 16 cells.
+#[test]
+fn neighbours_are_independent() {
+    let mut smallest = 1.0f64;
+    for step in [[1, 0, 0, 0], [512, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]] {
+        let mut counts = [const { [0u32; 256] }; 4];
+        for i in 0..100_000u32 {
+            let [pixel, sample, block, seed] = [i % 512, i / 512, 1, 0];
+            let here = random4(pixel, sample, block, seed);
+            let next = random4(pixel + step[0], sample + step[1], block + step[2], seed + step[3]);
+            for k in 0..4 {
+                counts[k][(here[k] >> 28 << 4 | next[k] >> 28) as usize] += 1;
+            }
+        }
+        smallest = counts.iter().fold(smallest, |p, c| p.min(chi_square(c)));
+    }
+    let p = sidak(smallest, 20);
+    assert!(p >= SIGNIFICANCE, "p = {p:e}");
+}
