@@ -45,6 +45,10 @@ fn differences(a: &Image, b: &Image) -> [f64; 2] {
 }
 
 fn main() {
+    if std::env::args().len() < 2 {
+        eprintln!("usage: accuracy_table SCENE...");
+        std::process::exit(2);
+    }
     let backends = backends();
     println!(
         "| scene | backend | one bounce: max | 99.9 % | full paths: max | 99.9 % | means: ratio | p | pixels: p |"

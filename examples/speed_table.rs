@@ -29,6 +29,10 @@ fn backends() -> Vec<Backend> {
 }
 
 fn main() {
+    if std::env::args().len() < 2 {
+        eprintln!("usage: speed_table SCENE...");
+        std::process::exit(2);
+    }
     let backends = backends();
     println!(
         "| scene | backend | build s | Mrays/s (least to most) | Msamples/s | ratio to the first (least to most) |"

@@ -43,8 +43,10 @@ pub struct Opened {
     pub tracer: Box<dyn Tracer>,
     /// What was chosen.
     pub backend: Backend,
-    /// Name of the device, with its driver.
+    /// Name of the device.
     pub device: String,
+    /// Its driver and version; empty without Vulkan.
+    pub driver: String,
     /// One sentence: why this backend on this device.
     pub why: String,
     /// True where the choice deserves a notice (no Vulkan at all, and so on).
@@ -102,10 +104,18 @@ pub fn open(scene: &Scene, request: &Request) -> Result<Opened> {
     };
     let start = Instant::now();
     let ray_query = backend == Backend::RayQuery;
-    let name = format!("{} ({})", device.name, device.driver);
+    let (name, driver) = (device.name.clone(), device.driver.clone());
     let device = Device::open(device, ray_query)?;
     let tracer = Box::new(GpuTracer::new(&device, scene, ray_query)?);
-    Ok(Opened { tracer, backend, device: name, why, notice: false, build_seconds: start.elapsed().as_secs_f64() })
+    Ok(Opened {
+        tracer,
+        backend,
+        device: name,
+        driver,
+        why,
+        notice: false,
+        build_seconds: start.elapsed().as_secs_f64(),
+    })
 }
 
 fn open_reference(scene: &Scene, why: String, notice: bool) -> Opened {
@@ -113,7 +123,15 @@ fn open_reference(scene: &Scene, why: String, notice: bool) -> Opened {
     let tracer = Box::new(Reference::new(scene));
     let threads = rayon::current_num_threads();
     let device = format!("{threads} CPU thread{}", if threads == 1 { "" } else { "s" });
-    Opened { tracer, backend: Backend::Cpu, device, why, notice, build_seconds: start.elapsed().as_secs_f64() }
+    Opened {
+        tracer,
+        backend: Backend::Cpu,
+        device,
+        driver: String::new(),
+        why,
+        notice,
+        build_seconds: start.elapsed().as_secs_f64(),
+    }
 }
 
 /// The backend that is the faster one on a device, and why.

@@ -63,6 +63,13 @@ pub fn check_writable(path: &Path) -> Result<()> {
     if !folder.is_dir() {
         return Err(Error::write(path, format!("the folder {} does not exist; create it first", folder.display())));
     }
+    if path.as_os_str().as_encoded_bytes().last().is_some_and(|b| std::path::is_separator(char::from(*b))) {
+        return Err(Error::write(path, "it is the name of a folder; give a file name"));
+    }
+    // A rename would replace what somebody has protected.
+    if std::fs::metadata(path).is_ok_and(|about| about.permissions().readonly()) {
+        return Err(Error::write(path, "it is read-only; make it writable, or give another name"));
+    }
     // Permission bits do not tell about read-only file systems, so one is really created (and removed).
     create_beside(path).map(drop)
 }

@@ -11,6 +11,21 @@
 //!                                                  + buffers ─► path_trace kernel ┘
 //! ```
 //!
+//! ```no_run
+//! use luminaire::{backend, image_io, render, scene};
+//! use std::{path::Path, sync::atomic::AtomicBool};
+//!
+//! # fn main() -> luminaire::Result<()> {
+//! let scene = scene::load(Path::new("scenes/cornell/cornell.toml"))?;
+//! let mut opened = backend::open(&scene, &backend::Request::default())?;
+//! let limits = render::Limits { spp: Some(16), seconds: None };
+//! let size = (scene.film.width, scene.film.height);
+//! let rendered = render::render(opened.tracer.as_mut(), size, limits, &mut |_| {}, &AtomicBool::new(false))?;
+//! image_io::save(Path::new("cornell.png"), &rendered.film, scene.settings.exposure)?;
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! # From the lecture to the code
 //!
 //! What is here of the lecture "Raytracing" (R. Kuffner dos Anjos). Shaders are under `shaders/`; each function has a twin of

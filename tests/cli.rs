@@ -283,7 +283,7 @@ fn inspect_tells_what_was_loaded() {
     let output = folder.luminaire(&["inspect", "good.obj"]).output().unwrap();
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let said = String::from_utf8_lossy(&output.stdout);
-    for part in ["1 in 1 objects", "lamp", "1 emissive triangles", "warnings"] {
+    for part in ["1 in 1 object;", "lamp", "1 emissive triangles", "warnings"] {
         assert!(said.contains(part), "{part} is not in\n{said}");
     }
 }

@@ -25,10 +25,12 @@ fn describe(scene: &Scene) -> String {
             row(
                 "triangles",
                 format!(
-                    "{} in {} objects; {stored} stored in {} meshes",
+                    "{} in {} {}; {stored} stored in {} {}",
                     scene.triangle_count(),
                     scene.objects.len(),
-                    scene.meshes.len()
+                    if scene.objects.len() == 1 { "object" } else { "objects" },
+                    scene.meshes.len(),
+                    if scene.meshes.len() == 1 { "mesh" } else { "meshes" }
                 ),
             ),
             row("bounds", format!("{low:.4} to {high:.4}")),
@@ -230,7 +232,7 @@ mod tests {
         };
         let text = describe(&scene);
         for part in [
-            "22 in 22 objects; 1 stored in 1 meshes",
+            "22 in 22 objects; 1 stored in 1 mesh",
             "64 x 48 pixels, box filter",
             "at most 4 indirect bounces",
             "path tracer, Lambert, instances, point luminaires, area luminaires",

@@ -67,7 +67,8 @@ fn trace(
     seconds.open = start.elapsed().as_secs_f64();
     seconds.build = opened.build_seconds;
     let notice = if opened.notice { "notice: " } else { "" };
-    say(&format!("{notice}{} on {}: {}", opened.backend, opened.device, opened.why));
+    let driver = if opened.driver.is_empty() { String::new() } else { format!(", {}", opened.driver) };
+    say(&format!("{notice}{} on {}{driver}: {}", opened.backend, opened.device, opened.why));
 
     let scene_spp = options.time.is_none().then_some(scene.settings.spp);
     let limits = Limits { spp: options.spp.or(scene_spp), seconds: options.time };

@@ -200,7 +200,10 @@ impl Instance {
             index,
             name: text(&plain.device_name),
             driver: if modern {
-                format!("{} {}", text(&driver.driver_name), text(&driver.driver_info)).trim().to_owned()
+                let (name, info) = (text(&driver.driver_name), text(&driver.driver_info));
+                // Not twice.
+                let known = text(&plain.device_name).contains(&name) || info.contains(&name);
+                if known && !info.is_empty() { info } else { format!("{name} {info}").trim().to_owned() }
             } else {
                 format!("driver version {:#x}", plain.driver_version)
             },

@@ -63,8 +63,9 @@ impl LuminaireTable {
                 entries.push(SampledLuminaire::Area(EmissiveTriangle { object, triangle, vertices, emission }));
             }
         }
-        let radius = scene_radius(scene);
-        let powers: Vec<f64> = entries.iter().map(|e| power(e, radius)).collect();
+        let (low, high) = scene.world_bounds();
+        let (center, radius) = (0.5 * (low + high), 0.5 * (high - low).length());
+        let powers: Vec<f64> = entries.iter().map(|e| power(e, center, radius)).collect();
         let emits: Vec<bool> = powers.iter().map(|p| *p > 0.0).collect();
         let mut keep = emits.iter();
         entries.retain(|_| *keep.next().expect("one flag an entry"));
@@ -82,20 +83,18 @@ pub(crate) fn widen(map: glam::Affine3A) -> DAffine3 {
     }
 }
 
-/// Radiant power in watts, averaged over the channels.
-fn power(luminaire: &SampledLuminaire, scene_radius: f64) -> f64 {
+/// The radiant power that may reach the scene, averaged over the channels; the scene lies in the sphere with this center and
+/// radius.
+fn power(luminaire: &SampledLuminaire, center: DVec3, radius: f64) -> f64 {
     let mean = |c: &Vec3| c.as_dvec3().element_sum() / 3.0;
     match luminaire {
-        SampledLuminaire::Impulse(Luminaire::Point { intensity, .. }) => 4.0 * PI * mean(intensity),
-        SampledLuminaire::Impulse(Luminaire::Infinite { irradiance, .. }) => {
-            PI * scene_radius * scene_radius * mean(irradiance)
+        SampledLuminaire::Impulse(Luminaire::Point { position, intensity }) => {
+            // From far away only the solid angle of the sphere counts.
+            let sine2 = (radius * radius / position.as_dvec3().distance_squared(center)).min(1.0);
+            let solid_angle = if sine2 < 1.0 { 2.0 * PI * sine2 / (1.0 + (1.0 - sine2).sqrt()) } else { 4.0 * PI };
+            solid_angle * mean(intensity)
         }
+        SampledLuminaire::Impulse(Luminaire::Infinite { irradiance, .. }) => PI * radius * radius * mean(irradiance),
         SampledLuminaire::Area(triangle) => 2.0 * PI * triangle.area() * mean(&triangle.emission),
     }
-}
-
-/// Half the diagonal of the world bounding box.
-fn scene_radius(scene: &Scene) -> f64 {
-    let (low, high) = scene.world_bounds();
-    0.5 * (high - low).length()
 }

@@ -125,8 +125,8 @@ pub(super) fn load(path: &Path) -> Result<Scene> {
         Error::Parse { path: path.to_owned(), line, column: 0, message: "a scene file has to be UTF-8 text".into() }
     })?;
     let file = File { path, text };
-    let scene: SceneFile =
-        ::toml::from_str(text).map_err(|error| file.error(error.span().unwrap_or(0..0), error.message().trim()))?;
+    let scene: SceneFile = ::toml::from_str(text)
+        .map_err(|error| file.error(error.span().unwrap_or(0..0), in_plain_words(error.message().trim())))?;
     file.build(scene)
 }
 
@@ -343,4 +343,18 @@ impl File<'_> {
         }
         Ok(rounded)
     }
+}
+
+/// The parser's words for types, as TOML users know them.
+fn in_plain_words(message: &str) -> String {
+    let words = [
+        ("invalid type: map, expected a sequence", "one table, expected a list of them: write [[ ]] around its name"),
+        ("invalid type: map, expected", "a table (or a list of tables), expected"),
+        ("expected f64", "expected a number"),
+        ("expected f32", "expected a number"),
+        ("expected i64", "expected a whole number"),
+        ("expected u32", "expected a whole number from 0 to 4294967295"),
+        ("expected an array of length 3", "expected three numbers"),
+    ];
+    words.iter().fold(message.to_owned(), |text, (from, to)| text.replace(from, to))
 }
