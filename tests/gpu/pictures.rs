@@ -143,6 +143,30 @@ fn point_luminaire_in_a_sphere() {
     });
 }
 
+/// Light behind a wall stays there, though the wall's vertex normals lean so far that its shading normal sees it.
+#[test]
+fn light_does_not_leak_through_a_wall() {
+    let mut scene = empty(8, 8);
+    scene.sensor.fov = 10.0;
+    let mut wall = quad(Vec3::new(-1.0, -1.0, -2.0), Vec3::X * 2.0, Vec3::Y * 2.0);
+    wall.normals = vec![Vec3::new(0.0, 0.9, 0.43589).normalize(); 4];
+    add(&mut scene, wall, matte(Vec3::splat(0.5)), Affine3A::IDENTITY);
+    for (from, lit) in [(Vec3::new(0.0, 1.0, -0.2), false), (Vec3::new(0.0, 1.0, 0.2), true)] {
+        scene.luminaires = vec![Luminaire::Infinite { direction: -from.normalize(), irradiance: Vec3::ONE }];
+        let expected = pixels(&mut Reference::new(&scene), &scene, 1);
+        assert!(expected.iter().all(|p| (p.x > 0.0) == lit));
+        on_every_backend(|backend| {
+            let found = pixels(&mut backend.tracer(&scene), &scene, 1);
+            assert!(
+                found.iter().all(|p| (p.x > 0.0) == lit),
+                "{}, light from {from}: {}",
+                backend.name(),
+                mean(&found)
+            );
+        });
+    }
+}
+
 /// Lamps as narrow as a tube light or a finely cut sphere do not shadow themselves: at equal seeds the reference's light.
 #[test]
 fn narrow_lamps_do_not_shadow_themselves() {
