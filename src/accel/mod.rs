@@ -6,6 +6,7 @@ mod ray_query;
 
 use crate::bvh::{MeshBvh, STACK_SIZE, TwoLevelBvh, spatial_order};
 use crate::gpu::layout::Object;
+use crate::gpu::model::KernelModel;
 use crate::gpu::{Binding, Buffer, Device, TexelBuffer};
 use crate::scene::{Scene, widen};
 use crate::{Error, Result};
@@ -28,16 +29,20 @@ enum Intersector {
 }
 
 impl Geometry {
-    /// Uploads a scene and builds what rays are traced against. `instances`: the kernel knows more than one untransformed object.
+    /// Uploads a scene and builds what rays are traced against. What the kernel does not model is left out.
     ///
     /// # Errors
     /// If the scene is beyond a limit of the device, or the driver fails.
-    pub fn build(device: &Arc<Device>, scene: &Scene, ray_query: bool, instances: bool) -> Result<Self> {
-        if ray_query { Self::build_ray_query(device, scene) } else { Self::build_compute_bvh(device, scene, instances) }
+    pub fn build(device: &Arc<Device>, scene: &Scene, ray_query: bool, model: &KernelModel) -> Result<Self> {
+        if ray_query {
+            Self::build_ray_query(device, scene, model)
+        } else {
+            Self::build_compute_bvh(device, scene, model)
+        }
     }
 
-    fn build_compute_bvh(device: &Arc<Device>, scene: &Scene, instances: bool) -> Result<Self> {
-        let bvh = TwoLevelBvh::build(scene, instances);
+    fn build_compute_bvh(device: &Arc<Device>, scene: &Scene, model: &KernelModel) -> Result<Self> {
+        let bvh = TwoLevelBvh::build(scene, model.instances);
         if bvh.stack_depth > STACK_SIZE {
             return Err(Error::Limit {
                 what: "the BVH".into(),
@@ -50,12 +55,12 @@ impl Geometry {
             });
         }
         let nodes = TexelBuffer::new(device, "BVH nodes", &bvh.nodes, vk::BufferUsageFlags::empty())?;
-        Self::with_order(device, scene, &bvh.meshes, &bvh.object_order, vk::BufferUsageFlags::empty(), |_, _| {
+        Self::with_order(device, scene, model, &bvh.meshes, &bvh.object_order, vk::BufferUsageFlags::empty(), |_, _| {
             Ok(Intersector::ComputeBvh(nodes))
         })
     }
 
-    fn build_ray_query(device: &Arc<Device>, scene: &Scene) -> Result<Self> {
+    fn build_ray_query(device: &Arc<Device>, scene: &Scene, model: &KernelModel) -> Result<Self> {
         let mut triangle_offset = 0;
         let meshes: Vec<MeshBvh> = scene
             .meshes
@@ -84,7 +89,7 @@ impl Geometry {
             scene.objects.iter().map(|o| o.object_to_world.transform_point3(mesh_centres[o.mesh as usize])).collect();
         let usage = vk::BufferUsageFlags::SHADER_DEVICE_ADDRESS
             | vk::BufferUsageFlags::ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_KHR;
-        Self::with_order(device, scene, &meshes, &spatial_order(&centres), usage, |triangles, objects| {
+        Self::with_order(device, scene, model, &meshes, &spatial_order(&centres), usage, |triangles, objects| {
             ray_query::TopLevel::build(device, scene, &meshes, triangles, objects).map(Intersector::RayQuery)
         })
     }
@@ -93,15 +98,15 @@ impl Geometry {
     fn with_order(
         device: &Arc<Device>,
         scene: &Scene,
+        model: &KernelModel,
         meshes: &[MeshBvh],
         object_order: &[u32],
         usage: vk::BufferUsageFlags,
         intersector: impl FnOnce(&TexelBuffer, &[Object]) -> Result<Intersector>,
     ) -> Result<Self> {
         let count: usize = meshes.iter().map(|m| m.order.len()).sum();
-        let with_normals = scene.meshes.iter().any(|m| !m.normals.is_empty());
         let mut triangles: Vec<[u32; 4]> = Vec::with_capacity(3 * count);
-        let mut normals: Vec<[u32; 4]> = Vec::with_capacity(if with_normals { 3 * count } else { 0 });
+        let mut normals: Vec<[u32; 4]> = Vec::with_capacity(if model.vertex_normals { 3 * count } else { 0 });
         let texel = |v: Vec3, w: u32| [v.x.to_bits(), v.y.to_bits(), v.z.to_bits(), w];
         for (mesh, place) in scene.meshes.iter().zip(meshes) {
             for &index in &place.order {
@@ -109,7 +114,7 @@ impl Geometry {
                 let extra = [triangle.material, index, 0];
                 for (corner, vertex) in triangle.vertices.into_iter().enumerate() {
                     triangles.push(texel(mesh.positions[vertex as usize], extra[corner]));
-                    if with_normals {
+                    if model.vertex_normals {
                         normals.push(texel(mesh.normals.get(vertex as usize).copied().unwrap_or(Vec3::ZERO), 0));
                     }
                 }

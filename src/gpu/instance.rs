@@ -145,10 +145,11 @@ impl Instance {
         // SAFETY: the instance is alive.
         let raw = unsafe { self.raw.enumerate_physical_devices() }.map_err(failed)?;
         // A device that does not even answer must not hide the others.
-        Ok(raw.into_iter().enumerate().filter_map(|(index, raw)| self.inspect(index, raw).ok()).collect())
+        let found = raw.into_iter().filter_map(|raw| self.inspect(raw).ok());
+        Ok(found.enumerate().map(|(index, device)| PhysicalDevice { index, ..device }).collect())
     }
 
-    fn inspect(self: &Arc<Self>, index: usize, raw: vk::PhysicalDevice) -> ash::prelude::VkResult<PhysicalDevice> {
+    fn inspect(self: &Arc<Self>, raw: vk::PhysicalDevice) -> ash::prelude::VkResult<PhysicalDevice> {
         let mut driver = vk::PhysicalDeviceDriverProperties::default();
         let mut structures = vk::PhysicalDeviceAccelerationStructurePropertiesKHR::default();
         // SAFETY: `raw` comes from this instance, here and below.
@@ -197,7 +198,7 @@ impl Instance {
         Ok(PhysicalDevice {
             instance: self.clone(),
             raw,
-            index,
+            index: 0,
             name: text(&plain.device_name),
             driver: if modern {
                 let (name, info) = (text(&driver.driver_name), text(&driver.driver_info));

@@ -36,7 +36,7 @@ impl GpuScene {
     pub(super) fn new(device: &Arc<Device>, scene: &Scene, ray_query: bool) -> Result<Self> {
         let table = LuminaireTable::new(scene);
         let model = KernelModel::with(scene, &table);
-        let geometry = Geometry::build(device, scene, ray_query, model.instances)?;
+        let geometry = Geometry::build(device, scene, ray_query, &model)?;
         let materials: Vec<_> = scene.materials.iter().map(material).collect();
         let luminaires: Vec<_> = (0..table.entries.len()).map(|i| luminaire(scene, &table, i)).collect();
         let frame = [frame(scene, table.entries.len() as u32)];
@@ -67,8 +67,6 @@ pub struct GpuTracer {
     counters: Buffer,
     readback: Buffer,
     device: Arc<Device>,
-    /// What the kernel models.
-    pub model: KernelModel,
 }
 
 impl GpuTracer {
@@ -95,8 +93,7 @@ impl GpuTracer {
             &bindings,
             size_of::<layout::Batch>() as u32,
         )?;
-        let model = gpu_scene.model;
-        Ok(GpuTracer { kernel, _scene: gpu_scene, sums, counters, readback, device: device.clone(), model })
+        Ok(GpuTracer { kernel, _scene: gpu_scene, sums, counters, readback, device: device.clone() })
     }
 }
 

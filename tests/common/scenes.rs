@@ -1,6 +1,7 @@
 //! Small scenes, built in code.
 
-use glam::{Affine3A, Mat3, Vec3};
+use glam::{Affine3A, DVec3, Mat3, Vec3};
+use luminaire::reference::surfel::Surfel;
 use luminaire::scene::*;
 use std::collections::HashMap;
 
@@ -161,4 +162,19 @@ pub fn transformed(scene: &Scene, scale: f32, shift: Vec3) -> Scene {
     scene.sensor.position = map.transform_point3(scene.sensor.position);
     scene.sensor.target = map.transform_point3(scene.sensor.target);
     scene
+}
+
+/// A surfel at the origin whose normals are +z.
+pub fn flat_surfel(lambert: DVec3, glossy: DVec3, exponent: f64) -> Surfel {
+    Surfel {
+        position: DVec3::ZERO,
+        position_error: DVec3::ZERO,
+        geometric_normal: DVec3::Z,
+        shading_normal: DVec3::Z,
+        emission: DVec3::ZERO,
+        ambient: DVec3::ZERO,
+        lambert,
+        glossy,
+        exponent,
+    }
 }

@@ -5,7 +5,7 @@ use crate::common::scenes::*;
 use crate::common::statistics::{SIGNIFICANCE, chi_square};
 use glam::{Affine3A, DVec3, Vec3};
 use luminaire::gpu::probe::{Call, Function, Probe};
-use luminaire::reference::{surfel::Surfel, warp};
+use luminaire::reference::warp;
 use luminaire::sampling::{random4, uniform};
 use luminaire::scene::{Luminaire, LuminaireTable, Material};
 use rand::rngs::StdRng;
@@ -149,17 +149,7 @@ fn bsdf_matches() {
             let material = scene.materials[call[0][3] as usize].clone();
             let (wo, wi) = (DVec3::from_slice(&floats(call[0])), DVec3::from_slice(&floats(call[1])));
             let exponent = f64::from(material.exponent);
-            let surfel = Surfel {
-                position: DVec3::ZERO,
-                position_error: DVec3::ZERO,
-                geometric_normal: DVec3::Z,
-                shading_normal: DVec3::Z,
-                emission: DVec3::ZERO,
-                ambient: DVec3::ZERO,
-                lambert: material.lambert.as_dvec3(),
-                glossy: material.glossy.as_dvec3(),
-                exponent,
-            };
+            let surfel = flat_surfel(material.lambert.as_dvec3(), material.glossy.as_dvec3(), exponent);
             let expected = surfel.bsdf(wo, wi);
             let found = DVec3::from_slice(&floats(result[0]));
             // cos^m amplifies the rounding of the cosine (a few 2^-24) m times, and pow() has an error of its own.

@@ -79,20 +79,6 @@ fn chi_square_has_power() {
     assert!(p < 1e-12, "p = {p}");
 }
 
-fn flat_surfel(lambert: f64, glossy: f64, exponent: f64) -> Surfel {
-    Surfel {
-        position: DVec3::ZERO,
-        position_error: DVec3::ZERO,
-        geometric_normal: DVec3::Z,
-        shading_normal: DVec3::Z,
-        emission: DVec3::ZERO,
-        ambient: DVec3::ZERO,
-        lambert: DVec3::splat(lambert),
-        glossy: DVec3::splat(glossy),
-        exponent,
-    }
-}
-
 /// Share of the light from `wo` that is scattered: the midpoint rule over half vectors, spaced evenly under the density
 /// `(m + 1) / 2 pi * cos^m`, so that lobes of every width are resolved.
 fn directional_albedo(surfel: &Surfel, wo: DVec3) -> f64 {
@@ -119,7 +105,7 @@ fn directional_albedo(surfel: &Surfel, wo: DVec3) -> f64 {
 #[test]
 fn glossy_lobe_conserves_energy() {
     for m in [0.0, 1.0, 5.0, 20.0, 100.0, 1000.0, 10_000.0] {
-        let surfel = flat_surfel(0.0, 1.0, m);
+        let surfel = flat_surfel(DVec3::splat(0.0), DVec3::splat(1.0), m);
         let at = |degrees: f64| {
             directional_albedo(&surfel, DVec3::new(degrees.to_radians().sin(), 0.0, degrees.to_radians().cos()))
         };
@@ -142,8 +128,8 @@ fn glossy_lobe_conserves_energy() {
 #[test]
 fn scatter_weights_match_the_albedo() {
     let wo = DVec3::new(0.6, 0.0, 0.8);
-    let diffuse = flat_surfel(0.35, 0.0, 0.0);
-    let mixed = flat_surfel(0.3, 0.5, 10.0);
+    let diffuse = flat_surfel(DVec3::splat(0.35), DVec3::splat(0.0), 0.0);
+    let mixed = flat_surfel(DVec3::splat(0.3), DVec3::splat(0.5), 10.0);
     for (surfel, resolution) in [(diffuse, 1e-15), (mixed, 2e-3)] {
         let expected = directional_albedo(&surfel, wo);
         let weights = (0..N).map(|i| {
@@ -157,8 +143,8 @@ fn scatter_weights_match_the_albedo() {
         }
     }
     assert_eq!(survival(&mixed), 0.8);
-    assert_eq!(survival(&flat_surfel(1.0, 0.0, 0.0)), 0.9999);
-    assert_eq!(survival(&flat_surfel(0.0, 0.0, 0.0)), 0.0);
+    assert_eq!(survival(&flat_surfel(DVec3::splat(1.0), DVec3::splat(0.0), 0.0)), 0.9999);
+    assert_eq!(survival(&flat_surfel(DVec3::splat(0.0), DVec3::splat(0.0), 0.0)), 0.0);
 }
 
 /// Directions are distributed about the shading normal: a cap of cosines above 0.9 around it, all of it above the surface, gets
@@ -166,7 +152,7 @@ fn scatter_weights_match_the_albedo() {
 #[test]
 fn scatter_is_about_the_shading_normal() {
     let normal = DVec3::new(0.6, 0.0, 0.8);
-    let tilted = Surfel { shading_normal: normal, ..flat_surfel(0.5, 0.0, 0.0) };
+    let tilted = Surfel { shading_normal: normal, ..flat_surfel(DVec3::splat(0.5), DVec3::splat(0.0), 0.0) };
     let in_cap = (0..N).map(|i| {
         let random = random4(i, 0, 9, 4);
         let (wi, weight) = scatter(&tilted, DVec3::Z, uniform(random[0]), uniform(random[1]));
@@ -178,7 +164,8 @@ fn scatter_is_about_the_shading_normal() {
 /// Light may go either way, and nothing is scattered to the far side of either normal.
 #[test]
 fn bsdf_is_reciprocal_and_one_sided() {
-    let tilted = Surfel { shading_normal: DVec3::new(0.6, 0.0, 0.8), ..flat_surfel(0.3, 0.5, 7.0) };
+    let tilted =
+        Surfel { shading_normal: DVec3::new(0.6, 0.0, 0.8), ..flat_surfel(DVec3::splat(0.3), DVec3::splat(0.5), 7.0) };
     let mut scattered = 0;
     for i in 0..1000 {
         let random = random4(i, 0, 0, 3).map(uniform);
