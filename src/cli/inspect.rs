@@ -72,13 +72,21 @@ fn row(name: &str, value: String) -> Vec<String> {
 
 fn sensor(scene: &Scene) -> String {
     let s = &scene.sensor;
-    format!("at {}, looking at {}, up {}, {} degrees high", rgb(s.position), rgb(s.target), rgb(s.up), s.fov)
+    format!(
+        "at {}, looking at {}, up {}, {} degrees high",
+        rgb(s.position),
+        rgb(s.target),
+        rgb(s.up),
+        match s.projection {
+            luminaire::scene::Projection::Perspective { fov } => fov,
+            luminaire::scene::Projection::Orthographic { height } => height,
+        }
+    )
 }
 
 fn integrator(integrator: &Integrator) -> String {
     match integrator {
-        Integrator::Path { max_bounces: None } => "path, ended by extinction".into(),
-        Integrator::Path { max_bounces: Some(n) } => format!("path, at most {n} indirect bounces"),
+        Integrator::Path(estimator) => format!("path: {estimator:?}"),
         Integrator::Simple { ambient } => format!("simple: direct light and ambient radiance {}", rgb(*ambient)),
     }
 }
@@ -167,6 +175,9 @@ fn luminaires(scene: &Scene) -> Vec<Vec<String>> {
                 format!("irradiance {}", rgb(*irradiance)),
                 percent(*pdf),
             ]),
+            SampledLuminaire::Environment => {
+                rows.push(vec!["environment".into(), String::new(), String::new(), percent(*pdf)]);
+            }
             SampledLuminaire::Area(triangle) => {
                 triangles += 1;
                 area += triangle.area();

@@ -6,7 +6,7 @@ use super::{IntegratorName, RenderOptions, print, tell};
 use luminaire::backend::{self, Backend, Opened, Request};
 use luminaire::film::Film;
 use luminaire::render::{End, Limits, Rendered, render};
-use luminaire::scene::{self, FilmSettings, Integrator, Scene};
+use luminaire::scene::{self, Estimator, FilmSettings, Integrator, Scene};
 use luminaire::{Error, Result, image_io};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -226,17 +226,17 @@ fn apply(options: &RenderOptions, film: &mut FilmSettings, integrator: &mut Inte
     };
     let mut warning = None;
     match (options.integrator, *integrator) {
-        (Some(IntegratorName::Simple), Integrator::Path { .. }) => {
+        (Some(IntegratorName::Simple), Integrator::Path(_)) => {
             *integrator = Integrator::Simple { ambient: glam::Vec3::ZERO };
             warning =
                 Some("the scene gives no ambient radiance: the simple integrator shows direct light alone".into());
         }
-        (Some(IntegratorName::Path), Integrator::Simple { .. }) => *integrator = Integrator::Path { max_bounces: None },
+        (Some(IntegratorName::Path), Integrator::Simple { .. }) => *integrator = Integrator::Path(Estimator::default()),
         _ => {}
     }
     if let Some(limit) = options.max_bounces {
         match integrator {
-            Integrator::Path { max_bounces } => *max_bounces = Some(limit),
+            Integrator::Path(estimator) => estimator.max_bounces = Some(limit),
             Integrator::Simple { .. } => {
                 return Err(Error::Usage(
                     "--max-bounces belongs to the path integrator, but the scene asks for the simple one: \

@@ -150,7 +150,8 @@ fn vec4(v: Vec3, w: f64) -> [f32; 4] {
 }
 
 fn frame(scene: &Scene, luminaire_count: u32) -> layout::Frame {
-    let Sensor { position, target, up, fov } = scene.sensor;
+    let Sensor { position, target, up, projection, .. } = scene.sensor;
+    let crate::scene::Projection::Perspective { fov } = projection else { unreachable!() };
     // In f64 like the reference: these are rounded once.
     let half = (f64::from(fov).to_radians() / 2.0).tan();
     let forward = (target.as_dvec3() - position.as_dvec3()).normalize();
@@ -159,7 +160,7 @@ fn frame(scene: &Scene, luminaire_count: u32) -> layout::Frame {
     let aspect = f64::from(scene.film.width) / f64::from(scene.film.height);
     let (ambient, max_bounces) = match scene.integrator {
         Integrator::Simple { ambient } => (ambient, 0),
-        Integrator::Path { max_bounces } => (Vec3::ZERO, max_bounces.unwrap_or(u32::MAX)),
+        Integrator::Path(e) => (Vec3::ZERO, e.max_bounces.unwrap_or(u32::MAX)),
     };
     layout::Frame {
         position: vec4(position, 0.0),
@@ -199,6 +200,7 @@ fn luminaire(scene: &Scene, table: &LuminaireTable, index: usize) -> layout::Lum
         SampledLuminaire::Impulse(Luminaire::Infinite { direction, irradiance }) => {
             layout::Luminaire { a: vec4(-*direction, 0.0), radiance: vec4(*irradiance, pdf), kind: 1, ..entry }
         }
+        SampledLuminaire::Environment => entry,
         SampledLuminaire::Area(triangle) => {
             let [a, b, c] = triangle.vertices;
             let normal = (b - a).cross(c - a).normalize_or_zero();
@@ -208,7 +210,7 @@ fn luminaire(scene: &Scene, table: &LuminaireTable, index: usize) -> layout::Lum
                 b: vec4(b, triangle.area()),
                 c: vec4(c, position_error(scene, triangle)),
                 normal: vec4(normal.as_vec3(), 0.0),
-                radiance: vec4(triangle.emission, pdf),
+                radiance: vec4(scene.materials[triangle.material as usize].emission, pdf),
                 kind: 2,
                 ..entry
             }

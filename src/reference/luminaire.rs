@@ -29,8 +29,10 @@ impl Reference {
         let chosen = self.luminaires.choice.choose(random[0]);
         let light = match &self.luminaires.entries[chosen] {
             SampledLuminaire::Impulse(luminaire) => from_impulse(surfel, wo, luminaire),
+            SampledLuminaire::Environment => return DVec3::ZERO,
             SampledLuminaire::Area(triangle) => {
-                from_triangle(surfel, wo, triangle, uniform(random[1]), uniform(random[2]))
+                let emission = self.scene.materials[triangle.material as usize].emission.as_dvec3();
+                from_triangle(surfel, wo, triangle, emission, uniform(random[1]), uniform(random[2]))
             }
         };
         if light.radiance == DVec3::ZERO {
@@ -70,14 +72,20 @@ fn from_impulse(surfel: &Surfel, wo: DVec3, luminaire: &Luminaire) -> Unoccluded
 }
 
 /// A point on an emissive triangle, chosen evenly by area: `Le cos cos' area / d^2`.
-fn from_triangle(surfel: &Surfel, wo: DVec3, triangle: &EmissiveTriangle, u: f64, v: f64) -> Unoccluded {
+fn from_triangle(
+    surfel: &Surfel,
+    wo: DVec3,
+    triangle: &EmissiveTriangle,
+    emission: DVec3,
+    u: f64,
+    v: f64,
+) -> Unoccluded {
     let [a, b, c] = triangle.vertices;
     let point = interpolate(uniform_triangle(u, v), triangle.vertices);
     let normal = (b - a).cross(c - a).normalize_or_zero();
     let to_light = point - surfel.position;
     let wi = to_light.normalize_or_zero();
-    let irradiance = cosine(surfel, wi) * normal.dot(wi).abs() * triangle.area() / to_light.length_squared()
-        * triangle.emission.as_dvec3();
+    let irradiance = cosine(surfel, wi) * normal.dot(wi).abs() * triangle.area() / to_light.length_squared() * emission;
     // Both ends are inexact.
     let origin = surfel.offset_ray_origin(wi);
     let target = offset_ray_origin(point, position_error(triangle.vertices), normal, -wi);

@@ -34,8 +34,8 @@ impl Reference {
                     radiance += ambient.as_dvec3() * surfel.ambient;
                     break;
                 }
-                Integrator::Path { max_bounces: Some(last) } if bounce == last => break,
-                Integrator::Path { .. } => {}
+                Integrator::Path(e) if Some(bounce) == e.max_bounces => break,
+                Integrator::Path(_) => {}
             }
 
             // Extinction: the survivors stand for those that ended.

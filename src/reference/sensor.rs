@@ -18,7 +18,8 @@ impl Reference {
         let forward = (sensor.target.as_dvec3() - position).normalize();
         let right_axis = forward.cross(sensor.up.as_dvec3()).normalize();
         let up_axis = right_axis.cross(forward);
-        let half = (0.5 * f64::from(sensor.fov)).to_radians().tan();
+        let crate::scene::Projection::Perspective { fov } = sensor.projection else { return (position, forward) };
+        let half = (0.5 * f64::from(fov)).to_radians().tan();
         let aspect = f64::from(width) / f64::from(height);
         (position, (forward + right_axis * (right * half * aspect) + up_axis * (up * half)).normalize())
     }

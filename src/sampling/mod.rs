@@ -9,8 +9,10 @@
 //! | block | number 0 | number 1 | number 2 | number 3 |
 //! |---|---|---|---|---|
 //! | 0, [`SENSOR_BLOCK`] | pixel x | pixel y | lens u | lens v |
-//! | [`light_block`]`(b)` | which luminaire | point on it, u | point on it, v | extinction |
-//! | [`scatter_block`]`(b)` | direction, u | direction, v | free | free |
+//! | [`light_block`]`(b)` | which luminaire | point on it, u | point on it, v | texel of the environment |
+//! | [`scatter_block`]`(b)` | direction, u | direction, v | which lobe | extinction |
+//!
+//! Whether a ray passes a surface that is partly transparent is decided by [`coverage`], for each surface on its way.
 
 mod alias;
 
@@ -29,7 +31,37 @@ pub fn scatter_block(bounce: u32) -> u32 {
     2 + 2 * bounce
 }
 
-/// Four 32-bit random numbers; `pixel` is `y * width + x`.
+/// Where the random numbers come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Sampler {
+    /// Independent numbers: [`random4`].
+    #[default]
+    Independent,
+}
+
+impl Sampler {
+    /// The four numbers of a block; `pixel` is `y * width + x`.
+    pub fn numbers(self, pixel: u32, sample: u32, block: u32, seed: u32) -> [u32; 4] {
+        match self {
+            Sampler::Independent => random4(pixel, sample, block, seed),
+        }
+    }
+}
+
+/// What tells a ray's decisions about transparent surfaces apart from other rays'. `ray` is `2 b` for the ray to bounce `b`,
+/// `2 b + 1` for the shadow ray from there. Always independent numbers, whatever the sampler: they are few and far between.
+pub fn ray_salt(pixel: u32, sample: u32, ray: u32, seed: u32) -> u32 {
+    random4(pixel, sample, 0x8000_0000 | ray, seed)[0]
+}
+
+/// A ray is stopped by a surface if [`uniform`] of this number is below its opacity. `object` and `triangle` are the scene's
+/// indices.
+pub fn coverage(salt: u32, object: u32, triangle: u32) -> u32 {
+    random4(salt, object, triangle, 0)[0]
+}
+
+/// Four independent 32-bit random numbers; `pixel` is `y * width + x`.
 pub fn random4(pixel: u32, sample: u32, block: u32, seed: u32) -> [u32; 4] {
     let [mut x, mut y, mut z, mut w] =
         [pixel, sample, block, seed].map(|v| v.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));

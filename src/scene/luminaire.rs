@@ -1,6 +1,6 @@
 //! Every luminaire of a scene in one table, one of which is chosen by its power.
 
-use super::{Luminaire, Scene};
+use super::{EnvironmentDistribution, Luminaire, Material, Scene};
 use crate::sampling::AliasTable;
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 use std::f64::consts::PI;
@@ -14,8 +14,8 @@ pub struct EmissiveTriangle {
     pub triangle: u32,
     /// World-space corners.
     pub vertices: [DVec3; 3],
-    /// Emitted radiance, on both sides.
-    pub emission: Vec3,
+    /// Index into [`Scene::materials`], which knows what it emits, on both sides.
+    pub material: u32,
 }
 
 impl EmissiveTriangle {
@@ -33,15 +33,22 @@ pub enum SampledLuminaire {
     Impulse(Luminaire),
     /// A triangle that emits.
     Area(EmissiveTriangle),
+    /// The scene's environment.
+    Environment,
 }
 
 /// All luminaires, and the alias table that chooses among them in proportion to their power.
 #[derive(Debug, Clone, Default)]
 pub struct LuminaireTable {
-    /// Point luminaires and those at infinity first, in the scene's order; then the emissive triangles, object by object.
+    /// Point luminaires and those at infinity first, in the scene's order; then the emissive triangles, object by object; then
+    /// the environment.
     pub entries: Vec<SampledLuminaire>,
     /// Chooses an index into `entries`.
     pub choice: AliasTable,
+    /// Which direction of the environment is chosen, if it is an entry.
+    pub environment: Option<EnvironmentDistribution>,
+    /// Sum of all powers, in the unit of [`LuminaireTable::area_density`].
+    total_power: f64,
 }
 
 impl LuminaireTable {
@@ -53,24 +60,51 @@ impl LuminaireTable {
             let to_world = widen(object.object_to_world);
             let mesh = &scene.meshes[object.mesh as usize];
             for (triangle_index, triangle) in mesh.triangles.iter().enumerate() {
-                let emission = scene.material_of(object, triangle).emission;
-                if emission == Vec3::ZERO {
+                let material = object.material.unwrap_or(triangle.material);
+                if scene.materials[material as usize].emission == Vec3::ZERO {
                     continue;
                 }
                 let vertices =
                     triangle.vertices.map(|v| to_world.transform_point3(mesh.positions[v as usize].as_dvec3()));
                 let (object, triangle) = (object_index as u32, triangle_index as u32);
-                entries.push(SampledLuminaire::Area(EmissiveTriangle { object, triangle, vertices, emission }));
+                entries.push(SampledLuminaire::Area(EmissiveTriangle { object, triangle, vertices, material }));
             }
         }
         let (low, high) = scene.world_bounds();
         let (center, radius) = (0.5 * (low + high), 0.5 * (high - low).length());
-        let powers: Vec<f64> = entries.iter().map(|e| power(e, center, radius)).collect();
+        let environment = scene.environment.as_ref().and_then(EnvironmentDistribution::new);
+        entries.extend(environment.as_ref().map(|_| SampledLuminaire::Environment));
+        let exitance: Vec<f64> = scene.materials.iter().map(|material| exitance(scene, material)).collect();
+        let powers: Vec<f64> = entries
+            .iter()
+            .map(|entry| match entry {
+                SampledLuminaire::Impulse(luminaire) => impulse_power(luminaire, center, radius),
+                SampledLuminaire::Area(triangle) => exitance[triangle.material as usize] * triangle.area(),
+                SampledLuminaire::Environment => {
+                    PI * radius * radius * environment.as_ref().map_or(0.0, |environment| environment.total)
+                }
+            })
+            .collect();
         let emits: Vec<bool> = powers.iter().map(|p| *p > 0.0).collect();
         let mut keep = emits.iter();
         entries.retain(|_| *keep.next().expect("one flag an entry"));
         let powers: Vec<f64> = powers.into_iter().filter(|p| *p > 0.0).collect();
-        LuminaireTable { choice: AliasTable::new(&powers), entries }
+        let total_power = powers.iter().sum();
+        LuminaireTable { choice: AliasTable::new(&powers), entries, environment, total_power }
+    }
+
+    /// The probability of choosing a triangle of a material, for each unit of its area; 0 if the material does not emit.
+    pub fn area_density(&self, scene: &Scene, material: u32) -> f64 {
+        match exitance(scene, &scene.materials[material as usize]) {
+            0.0 => 0.0,
+            exitance => exitance / self.total_power,
+        }
+    }
+
+    /// The probability of choosing the environment; 0 if there is none.
+    pub fn environment_probability(&self) -> f64 {
+        // The last entry.
+        if self.environment.is_some() { self.choice.pdf.last().copied().unwrap_or(0.0) } else { 0.0 }
     }
 }
 
@@ -83,18 +117,23 @@ pub(crate) fn widen(map: glam::Affine3A) -> DAffine3 {
     }
 }
 
-/// The radiant power that may reach the scene, averaged over the channels; the scene lies in the sphere with this center and
-/// radius.
-fn power(luminaire: &SampledLuminaire, center: DVec3, radius: f64) -> f64 {
+/// Power that a surface of this material emits for each unit of area, on both sides, averaged over the channels and over its texture.
+fn exitance(scene: &Scene, material: &Material) -> f64 {
+    let texture = material.maps.emission.map_or(DVec3::ONE, |map| scene.textures[map as usize].mean());
+    2.0 * PI * (material.emission.as_dvec3() * texture).element_sum() / 3.0
+}
+
+/// The radiant power of a luminaire without an area that may reach the scene, averaged over the channels; the scene lies in the sphere
+/// with this center and radius.
+fn impulse_power(luminaire: &Luminaire, center: DVec3, radius: f64) -> f64 {
     let mean = |c: &Vec3| c.as_dvec3().element_sum() / 3.0;
     match luminaire {
-        SampledLuminaire::Impulse(Luminaire::Point { position, intensity }) => {
+        Luminaire::Point { position, intensity } => {
             // From far away only the solid angle of the sphere counts.
             let sine2 = (radius * radius / position.as_dvec3().distance_squared(center)).min(1.0);
             let solid_angle = if sine2 < 1.0 { 2.0 * PI * sine2 / (1.0 + (1.0 - sine2).sqrt()) } else { 4.0 * PI };
             solid_angle * mean(intensity)
         }
-        SampledLuminaire::Impulse(Luminaire::Infinite { irradiance, .. }) => PI * radius * radius * mean(irradiance),
-        SampledLuminaire::Area(triangle) => 2.0 * PI * triangle.area() * mean(&triangle.emission),
+        Luminaire::Infinite { irradiance, .. } => PI * radius * radius * mean(irradiance),
     }
 }

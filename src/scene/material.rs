@@ -74,7 +74,7 @@ impl Draft {
         }
         let exponent = self.exponent.unwrap_or(DEFAULT_EXPONENT);
         let emission = self.emission.unwrap_or(Vec3::ZERO);
-        Material { name: name.clone(), ambient, lambert, glossy, exponent, emission }
+        Material { name: name.clone(), ambient, lambert, glossy, exponent, emission, ..Material::default() }
     }
 }
 

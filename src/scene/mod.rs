@@ -4,6 +4,8 @@
 //! is what the files hold and what the GPU receives; the reference widens the same numbers to `f64`, so both tracers see
 //! the same scene to the last bit.
 
+mod environment;
+mod estimator;
 mod load;
 mod luminaire;
 mod material;
@@ -15,11 +17,15 @@ mod text;
 mod toml;
 mod toml_values;
 
+pub use crate::sampling::Sampler;
+pub use environment::EnvironmentDistribution;
+pub use estimator::{AreaSampling, Directions, Estimator, Extinction, Integrator, LightSampling, PRESETS};
 pub use load::load;
 pub(crate) use luminaire::widen;
 pub use luminaire::{EmissiveTriangle, LuminaireTable, SampledLuminaire};
 
-use glam::{Affine3A, Vec3};
+use glam::{Affine3A, Vec2, Vec3};
+use half::f16;
 use std::path::PathBuf;
 
 /// A whole scene, checked: indices are in range, numbers are finite, there is at least one triangle.
@@ -33,8 +39,12 @@ pub struct Scene {
     pub objects: Vec<Object>,
     /// Materials; triangles and objects refer to them by index. Never empty.
     pub materials: Vec<Material>,
+    /// Images; the maps of materials refer to them by index.
+    pub textures: Vec<Texture>,
     /// Point luminaires and luminaires at infinity. Area luminaires are the emissive triangles of `objects`.
     pub luminaires: Vec<Luminaire>,
+    /// Light from where rays escape to; none: escaping light disappears.
+    pub environment: Option<Environment>,
     /// The camera.
     pub sensor: Sensor,
     /// Film size and pixel filter.
@@ -57,6 +67,8 @@ pub struct Mesh {
     /// Unit vertex normals: empty (no triangle has any), or one for each position; a zero vector means "none here", and a
     /// triangle with such a corner is shaded flat.
     pub normals: Vec<Vec3>,
+    /// Texture coordinates, v upwards: empty (no triangle has any), or one for each position.
+    pub uvs: Vec<Vec2>,
     /// The triangles; all have a non-zero area.
     pub triangles: Vec<Triangle>,
 }
@@ -83,9 +95,11 @@ pub struct Object {
     pub material: Option<u32>,
 }
 
-/// The surface's scattering and emission: normalised Blinn-Phong (slide "Surface Element Class").
+/// The surface's scattering and emission: normalised Blinn-Phong (slide "Surface Element Class") and impulses (slides "Impulse
+/// Reflection", "Adding Transmission").
 ///
-/// `lambert + glossy <= 1` in every channel; the loader scales down what exceeds it and warns.
+/// `lambert + glossy + max(reflection, transmission) <= 1` in every channel, each times the largest texel of its map; the loader
+/// scales down what exceeds it and warns.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {
     /// The name in the MTL or scene file.
@@ -100,6 +114,75 @@ pub struct Material {
     pub exponent: f32,
     /// Emitted radiance, on both sides (`Ke`).
     pub emission: Vec3,
+    /// Albedo of the impulse reflection: all of it at every angle without `eta` (a mirror), times Fresnel's reflectance with it.
+    pub reflection: Vec3,
+    /// Albedo of the impulse transmission, times one minus Fresnel's reflectance (`Tf`); zero without `eta`.
+    pub transmission: Vec3,
+    /// Index of refraction of what lies behind the outward normal over that in front of it (`Ni`), greater than 0; none: no
+    /// Fresnel, no transmission.
+    pub eta: Option<f32>,
+    /// Probability with which a path takes an impulse, in [0, 1]; none: the impulses' share of the albedo at that angle. It changes
+    /// the noise, never the mean.
+    pub impulse_probability: Option<f32>,
+    /// Share of light that meets the surface at all, 0 (a hole) to 1 (`d`); the rest passes straight on.
+    pub opacity: f32,
+    /// Textures that multiply the numbers above.
+    pub maps: Maps,
+}
+
+/// Indices into [`Scene::textures`]; each texture multiplies the number of the same name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Maps {
+    /// `map_Ka`.
+    pub ambient: Option<u32>,
+    /// `map_Kd`.
+    pub lambert: Option<u32>,
+    /// `map_Ks`.
+    pub glossy: Option<u32>,
+    /// `map_Ke`.
+    pub emission: Option<u32>,
+    /// `map_d`, or the alpha of `map_Kd`: the texture's alpha channel counts.
+    pub opacity: Option<u32>,
+}
+
+/// An image on surfaces, bilinear between texel centres.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Texture {
+    /// A name for messages: the file name.
+    pub name: String,
+    /// Width in texels, at least 1.
+    pub width: u32,
+    /// Height in texels, at least 1.
+    pub height: u32,
+    /// Linear RGB and alpha, from the upper left, row by row; not negative, finite. Half floats: both tracers see these very
+    /// numbers (11 bits; 8-bit sRGB loses at most 0.05 %).
+    pub texels: Vec<[f16; 4]>,
+    /// Coordinates outside [0, 1] stay at the border instead of repeating (`-clamp on`).
+    pub clamp: bool,
+}
+
+/// Light from infinitely far away in all directions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Environment {
+    /// Radiance, or a factor to the image.
+    pub radiance: Vec3,
+    /// The image; none: the same from everywhere.
+    pub image: Option<EnvironmentImage>,
+    /// Degrees by which the image is turned about +y, counter-clockwise seen from above.
+    pub rotation: f32,
+}
+
+/// A latitude-longitude image: the upper edge is +y, the middle is -z, the right half is +x.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EnvironmentImage {
+    /// A name for messages: the file name.
+    pub name: String,
+    /// Width in texels.
+    pub width: u32,
+    /// Height in texels.
+    pub height: u32,
+    /// Linear RGB from the upper left, row by row; not negative, finite, not all zero.
+    pub texels: Vec<Vec3>,
 }
 
 /// A luminaire without an area.
@@ -121,7 +204,7 @@ pub enum Luminaire {
     },
 }
 
-/// A pinhole perspective camera.
+/// The camera.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sensor {
     /// Eye point.
@@ -130,12 +213,42 @@ pub struct Sensor {
     pub target: Vec3,
     /// A direction that is up in the picture; not parallel to the line of sight.
     pub up: Vec3,
-    /// Vertical field of view in degrees, in (0, 180).
-    pub fov: f32,
+    /// How directions become pixels.
+    pub projection: Projection,
+    /// A thin lens; none: a pinhole, everything is in focus.
+    pub lens: Option<Lens>,
+}
+
+/// How directions become pixels.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Projection {
+    /// All rays through the eye point.
+    Perspective {
+        /// Vertical field of view in degrees, in (0, 180).
+        fov: f32,
+    },
+    /// Parallel rays.
+    Orthographic {
+        /// Height of what the picture shows, in the scene's unit; greater than 0.
+        height: f32,
+    },
+}
+
+/// A thin lens around the eye point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lens {
+    /// Radius of the aperture, greater than 0; for blades, of the circle through the corners.
+    pub radius: f32,
+    /// Distance along the line of sight of the plane that is in focus; greater than 0.
+    pub focus_distance: f32,
+    /// Corners of the aperture, at least 3; 0: a disk.
+    pub blades: u32,
+    /// Degrees by which the aperture is turned.
+    pub rotation: f32,
 }
 
 /// Size of the picture and its pixel filter.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FilmSettings {
     /// Width in pixels.
     pub width: u32,
@@ -143,30 +256,35 @@ pub struct FilmSettings {
     pub height: u32,
     /// How a pixel weighs the light around it.
     pub filter: Filter,
+    /// Half the width of the filter's square in pixels; greater than 0.
+    pub filter_radius: f32,
 }
 
 /// Pixel filters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Filter {
-    /// Evenly over the pixel's own square.
+    /// Evenly over a square.
     #[default]
     Box,
+    /// Linear to zero at the radius, in x times in y.
+    Tent,
+    /// A Gaussian with a standard deviation of a third of the radius, cut there.
+    Gaussian,
+    /// The four-term Blackman-Harris window over the diameter.
+    #[serde(rename = "blackman-harris")]
+    BlackmanHarris,
 }
 
-/// Which of the lecture's estimators computes the radiance along a camera ray.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Integrator {
-    /// Emission, direct light of one luminaire chosen by power, indirect light by cosine-distributed directions, ended by extinction.
-    Path {
-        /// At most this many indirect bounces; none: extinction alone ends a path. 0 is direct light only.
-        max_bounces: Option<u32>,
-    },
-    /// The simple ray tracer: emission, direct light, and the ambient term in place of indirect light.
-    Simple {
-        /// Ambient radiance, multiplied by the surface's ambient albedo.
-        ambient: Vec3,
-    },
+impl Filter {
+    /// Half the width of the filter's square in pixels, unless a scene says otherwise.
+    pub fn default_radius(self) -> f32 {
+        match self {
+            Filter::Box => 0.5,
+            Filter::Tent => 1.0,
+            Filter::Gaussian | Filter::BlackmanHarris => 1.5,
+        }
+    }
 }
 
 /// What a scene file may say about its own rendering.
@@ -178,11 +296,42 @@ pub struct RenderSettings {
     pub seed: u32,
     /// Exposure in stops: the PNG shows radiance times 2^exposure.
     pub exposure: f32,
+    /// Where the random numbers come from.
+    pub sampler: Sampler,
 }
 
 impl Default for RenderSettings {
     fn default() -> Self {
-        RenderSettings { spp: 64, seed: 0, exposure: 0.0 }
+        RenderSettings { spp: 64, seed: 0, exposure: 0.0, sampler: Sampler::default() }
+    }
+}
+
+impl Default for Material {
+    /// Black and opaque.
+    fn default() -> Self {
+        Material {
+            name: String::new(),
+            ambient: Vec3::ZERO,
+            lambert: Vec3::ZERO,
+            glossy: Vec3::ZERO,
+            exponent: 0.0,
+            emission: Vec3::ZERO,
+            reflection: Vec3::ZERO,
+            transmission: Vec3::ZERO,
+            eta: None,
+            impulse_probability: None,
+            opacity: 1.0,
+            maps: Maps::default(),
+        }
+    }
+}
+
+impl Texture {
+    /// The mean of the colours, unweighted by alpha.
+    pub fn mean(&self) -> glam::DVec3 {
+        let sum: glam::DVec3 =
+            self.texels.iter().map(|[r, g, b, _]| glam::DVec3::new(r.to_f64(), g.to_f64(), b.to_f64())).sum();
+        sum / self.texels.len() as f64
     }
 }
 

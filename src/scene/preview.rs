@@ -1,7 +1,9 @@
 //! What an OBJ file needs to become a picture, and does not say: a camera, and a light if nothing in it emits.
 
 use super::load::Loader;
-use super::{FilmSettings, Filter, Integrator, Luminaire, Object, RenderSettings, Scene, Sensor, obj};
+use super::{
+    Estimator, FilmSettings, Filter, Integrator, Luminaire, Object, Projection, RenderSettings, Scene, Sensor, obj,
+};
 use crate::Result;
 use glam::{Affine3A, DVec3, Vec3};
 use std::path::Path;
@@ -18,7 +20,7 @@ const KEY_IRRADIANCE: f32 = 2.2;
 const AMBIENT: f32 = 0.2;
 
 /// Size and filter of the picture where nothing is said.
-pub(super) const FILM: FilmSettings = FilmSettings { width: 512, height: 512, filter: Filter::Box };
+pub(super) const FILM: FilmSettings = FilmSettings { width: 512, height: 512, filter: Filter::Box, filter_radius: 0.5 };
 
 /// Loads a bare OBJ.
 pub(super) fn load(path: &Path) -> Result<Scene> {
@@ -28,14 +30,22 @@ pub(super) fn load(path: &Path) -> Result<Scene> {
     let objects = vec![object];
     let materials = loader.finish_materials(&objects);
     let mut scene = Scene {
+        textures: Vec::new(),
+        environment: None,
         path: path.to_owned(),
         meshes: loader.meshes,
         objects,
         materials,
         luminaires: Vec::new(),
-        sensor: Sensor { position: Vec3::Z, target: Vec3::ZERO, up: Vec3::Y, fov: FOV },
+        sensor: Sensor {
+            position: Vec3::Z,
+            target: Vec3::ZERO,
+            up: Vec3::Y,
+            projection: Projection::Perspective { fov: FOV },
+            lens: None,
+        },
         film: FILM,
-        integrator: Integrator::Path { max_bounces: None },
+        integrator: Integrator::Path(Estimator::default()),
         settings: RenderSettings::default(),
         warnings: loader.warnings,
     };
@@ -81,5 +91,11 @@ pub(super) fn framing_sensor(scene: &Scene) -> Sensor {
     let half_width = (half_height.tan() * aspect).atan();
     let distance = radius / half_height.min(half_width).sin();
     let position = (center + distance * VIEW.normalize()).as_vec3();
-    Sensor { position, target: center.as_vec3(), up: Vec3::Y, fov: FOV }
+    Sensor {
+        position,
+        target: center.as_vec3(),
+        up: Vec3::Y,
+        projection: Projection::Perspective { fov: FOV },
+        lens: None,
+    }
 }

@@ -4,7 +4,10 @@ use super::load::Loader;
 use super::material::Draft;
 use super::text::line_and_column;
 use super::toml_values::{Colour, Exponent, Exposure, Finite, Fov, Pixels, Samples, Triple};
-use super::{FilmSettings, Filter, Integrator, Luminaire, Object, RenderSettings, Scene, Sensor, obj, preview};
+use super::{
+    Estimator, FilmSettings, Filter, Integrator, Luminaire, Object, Projection, RenderSettings, Scene, Sensor, obj,
+    preview,
+};
 use crate::{Error, Result};
 use ::toml::Spanned;
 use glam::{Affine3A, DAffine3, DMat3, DQuat, DVec3, Vec3};
@@ -167,14 +170,23 @@ impl File<'_> {
             spp: file.render.spp.map_or(defaults.spp, |spp| spp.0),
             seed: file.render.seed.unwrap_or(defaults.seed),
             exposure: file.render.exposure.map_or(defaults.exposure, |exposure| exposure.0),
+            sampler: defaults.sampler,
         };
         let mut scene = Scene {
+            textures: Vec::new(),
+            environment: None,
             path: self.path.to_owned(),
             materials: loader.finish_materials(&objects),
             meshes: loader.meshes,
             objects,
             luminaires,
-            sensor: Sensor { position: Vec3::Z, target: Vec3::ZERO, up: Vec3::Y, fov: 40.0 },
+            sensor: Sensor {
+                position: Vec3::Z,
+                target: Vec3::ZERO,
+                up: Vec3::Y,
+                projection: Projection::Perspective { fov: 40.0 },
+                lens: None,
+            },
             film,
             integrator,
             settings,
@@ -201,12 +213,18 @@ impl File<'_> {
         if u64::from(width) * u64::from(height) > u64::from(u32::MAX) {
             return Err(self.error(span, format!("a film of {width} x {height} has more than 2^32 - 1 pixels")));
         }
-        Ok(FilmSettings { width, height, filter: table.filter })
+        Ok(FilmSettings { width, height, filter: table.filter, filter_radius: table.filter.default_radius() })
     }
 
     fn sensor(&self, table: &Spanned<SensorTable>) -> Result<Sensor> {
         let SensorTable { position, target, up, fov } = table.get_ref();
-        let sensor = Sensor { position: position.0, target: target.0, up: up.map_or(Vec3::Y, |up| up.0), fov: fov.0 };
+        let sensor = Sensor {
+            position: position.0,
+            target: target.0,
+            up: up.map_or(Vec3::Y, |up| up.0),
+            projection: Projection::Perspective { fov: fov.0 },
+            lens: None,
+        };
         let view = sensor.target.as_dvec3() - sensor.position.as_dvec3();
         let up = sensor.up.as_dvec3();
         let wrong = if view == DVec3::ZERO {
@@ -223,7 +241,7 @@ impl File<'_> {
 
     fn integrator(&self, table: Option<IntegratorTable>) -> Result<Integrator> {
         let Some(IntegratorTable { kind, max_bounces, ambient }) = table else {
-            return Ok(Integrator::Path { max_bounces: None });
+            return Ok(Integrator::Path(Estimator::default()));
         };
         match (kind, max_bounces, ambient) {
             (IntegratorKind::Path, _, Some(ambient)) => {
@@ -233,9 +251,10 @@ impl File<'_> {
                 bounces.span(),
                 "`max_bounces` belongs to kind = \"path\"; the simple ray tracer does not bounce",
             )),
-            (IntegratorKind::Path, bounces, None) => {
-                Ok(Integrator::Path { max_bounces: bounces.map(Spanned::into_inner) })
-            }
+            (IntegratorKind::Path, bounces, None) => Ok(Integrator::Path(Estimator {
+                max_bounces: bounces.map(Spanned::into_inner),
+                ..Estimator::default()
+            })),
             (IntegratorKind::Simple, None, ambient) => {
                 Ok(Integrator::Simple { ambient: ambient.map_or(Vec3::ZERO, |ambient| ambient.into_inner().0) })
             }

@@ -13,11 +13,26 @@ pub fn empty(width: u32, height: u32) -> Scene {
         objects: vec![],
         materials: vec![],
         luminaires: vec![],
-        sensor: Sensor { position: Vec3::ZERO, target: -Vec3::Z, up: Vec3::Y, fov: 60.0 },
-        film: FilmSettings { width, height, filter: Filter::Box },
-        integrator: Integrator::Path { max_bounces: None },
+        textures: vec![],
+        environment: None,
+        sensor: pinhole(Vec3::ZERO, -Vec3::Z, Vec3::Y, 60.0),
+        film: FilmSettings { width, height, filter: Filter::Box, filter_radius: 0.5 },
+        integrator: Integrator::Path(Estimator::default()),
         settings: RenderSettings::default(),
         warnings: vec![],
+    }
+}
+
+/// A pinhole camera; `fov` in degrees.
+pub fn pinhole(position: Vec3, target: Vec3, up: Vec3, fov: f32) -> Sensor {
+    Sensor { position, target, up, projection: Projection::Perspective { fov }, lens: None }
+}
+
+/// The path estimator of a scene, to be changed.
+pub fn estimator(scene: &mut Scene) -> &mut Estimator {
+    match &mut scene.integrator {
+        Integrator::Path(estimator) => estimator,
+        Integrator::Simple { .. } => panic!("the simple ray tracer has no estimator"),
     }
 }
 
@@ -38,14 +53,7 @@ pub fn add_instance(scene: &mut Scene, mesh: u32, material: Material, object_to_
 
 /// A diffuse material that does not emit.
 pub fn matte(albedo: impl Into<Vec3>) -> Material {
-    Material {
-        name: "matte".into(),
-        ambient: Vec3::ZERO,
-        lambert: albedo.into(),
-        glossy: Vec3::ZERO,
-        exponent: 0.0,
-        emission: Vec3::ZERO,
-    }
+    Material { name: "matte".into(), lambert: albedo.into(), ..Material::default() }
 }
 
 /// A black material that emits.
@@ -56,7 +64,7 @@ pub fn lamp(emission: impl Into<Vec3>) -> Material {
 /// A mesh without vertex normals; its triangles' own material is the scene's first.
 pub fn mesh(positions: Vec<Vec3>, triangles: &[[u32; 3]]) -> Mesh {
     let triangles = triangles.iter().map(|&vertices| Triangle { vertices, material: 0 }).collect();
-    Mesh { name: "mesh".into(), positions, normals: vec![], triangles }
+    Mesh { name: "mesh".into(), positions, triangles, ..Mesh::default() }
 }
 
 /// The parallelogram with a corner and two edges.
@@ -116,8 +124,7 @@ pub fn icosphere(subdivisions: u32) -> Mesh {
 /// smooth glossy ball. All light stays inside. Coordinates of the sensor and the luminaires are multiples of 1/16.
 pub fn cornell_like(width: u32, height: u32) -> Scene {
     let mut scene = empty(width, height);
-    scene.sensor =
-        Sensor { position: Vec3::new(0.0, 0.0, 1.875), target: Vec3::new(0.0, -0.25, -1.0), up: Vec3::Y, fov: 75.0 };
+    scene.sensor = pinhole(Vec3::new(0.0, 0.0, 1.875), Vec3::new(0.0, -0.25, -1.0), Vec3::Y, 75.0);
     let grey = matte(Vec3::splat(0.7));
     let (x, y, z) = (Vec3::X * 4.0, Vec3::Y * 4.0, Vec3::Z * 4.0);
     let low = Vec3::splat(-2.0);

@@ -1,0 +1,130 @@
+//! Which of the lecture's estimators computes the radiance along a camera ray.
+
+use glam::Vec3;
+use serde::Deserialize;
+
+/// What runs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Integrator {
+    /// The path tracer.
+    Path(Estimator),
+    /// The simple ray tracer: emission, direct light, and the ambient term in place of indirect light.
+    Simple {
+        /// Ambient radiance, multiplied by the surface's ambient albedo.
+        ambient: Vec3,
+    },
+}
+
+/// The choices that the lecture discusses; any mix that ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimator {
+    /// How light is found.
+    pub light_sampling: LightSampling,
+    /// How a point on an area luminaire is chosen.
+    pub area_sampling: AreaSampling,
+    /// How the direction of indirect light is chosen.
+    pub directions: Directions,
+    /// How chance ends a path.
+    pub extinction: Extinction,
+    /// A path whose combined albedo falls below this ends (slide "Albedo Termination"): a bias.
+    pub albedo_threshold: Option<f32>,
+    /// At most this many indirect bounces; none: no limit. 0 is direct light only. Emission at bounce `max_bounces + 1` still
+    /// counts where it is direct light.
+    pub max_bounces: Option<u32>,
+}
+
+/// How light is found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LightSampling {
+    /// Only where a path happens to meet emission. Luminaires without an area are never found.
+    None,
+    /// Direct light alone: one luminaire a bounce (next-event estimation).
+    Direct,
+    /// Direct light and what the path meets, weighted by the power heuristic (Veach and Guibas 1995).
+    Mis,
+}
+
+/// How a point on an emissive triangle is chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum AreaSampling {
+    /// Evenly over its area.
+    Area,
+    /// Evenly over the solid angle where the triangle is near, over the area where it is far.
+    SolidAngle,
+}
+
+/// How the direction of indirect light is chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Directions {
+    /// Evenly over the hemisphere (slide "Inefficient Integration").
+    Uniform,
+    /// In proportion to the cosine (slide "More Efficient Integration").
+    Cosine,
+    /// The diffuse lobe by the cosine, the glossy lobe by its half vector.
+    Bsdf,
+}
+
+/// How chance ends a path.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Extinction {
+    /// It does not; `max_bounces` has to.
+    Off,
+    /// By the surface's extinction coefficient, survivors not re-weighted, as the slide "Extinction" has it: a bias.
+    Literal,
+    /// By the surface's extinction coefficient, re-weighted.
+    Surface,
+    /// By the throughput of the whole path, re-weighted (Russian roulette). The factor `eta^2` of transmission is left out.
+    Throughput,
+}
+
+impl Default for Estimator {
+    fn default() -> Self {
+        Estimator {
+            light_sampling: LightSampling::Mis,
+            area_sampling: AreaSampling::SolidAngle,
+            directions: Directions::Bsdf,
+            extinction: Extinction::Throughput,
+            albedo_threshold: None,
+            max_bounces: None,
+        }
+    }
+}
+
+/// What the slide "More Efficient Integration" has, with the extinction put right.
+const COSINE: Estimator = Estimator {
+    light_sampling: LightSampling::Direct,
+    area_sampling: AreaSampling::Area,
+    directions: Directions::Cosine,
+    extinction: Extinction::Surface,
+    albedo_threshold: None,
+    max_bounces: None,
+};
+
+/// Names for stages of the lecture, besides `simple` and `default`.
+pub const PRESETS: [(&str, Estimator); 5] = [
+    // Path tracing as Kajiya had it: light is only found by chance.
+    ("no-light-sampling", Estimator { light_sampling: LightSampling::None, ..COSINE }),
+    ("uniform", Estimator { directions: Directions::Uniform, ..COSINE }),
+    ("cosine", COSINE),
+    ("literal-extinction", Estimator { extinction: Extinction::Literal, ..COSINE }),
+    ("threshold", Estimator { albedo_threshold: Some(1e-4), ..COSINE }),
+];
+
+impl Estimator {
+    /// The preset of a name; none if there is no such.
+    pub fn preset(name: &str) -> Option<Estimator> {
+        if name == "default" {
+            return Some(Estimator::default());
+        }
+        PRESETS.iter().find(|(preset, _)| *preset == name).map(|(_, estimator)| *estimator)
+    }
+
+    /// Whether every path ends: chance ends it, or a limit.
+    pub fn ends(&self) -> bool {
+        self.extinction != Extinction::Off || self.max_bounces.is_some()
+    }
+}
