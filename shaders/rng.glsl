@@ -23,3 +23,7 @@ uvec4 random4(uint pixel, uint sample_index, uint block, uint seed) {
 // In [0, 1), exact: the upper 24 bits.
 float uniform1(uint random) { return float(random >> 8u) * (1.0 / 16777216.0); }
 vec2 uniform2(uvec2 random) { return vec2(random >> 8u) * (1.0 / 16777216.0); }
+
+uvec4 numbers(uint pixel, uint sample_index, uint block, uint seed) { return random4(pixel, sample_index, block, seed); }
+uint ray_salt(uint pixel, uint sample_index, uint ray, uint seed) { return random4(pixel, sample_index, 0x80000000u | ray, seed).x; }
+uint coverage(uint salt, uint object, uint triangle) { return random4(salt, object, triangle, 0u).x; }

@@ -6,6 +6,7 @@
 
 mod environment;
 mod estimator;
+mod filter;
 mod load;
 mod luminaire;
 mod material;
@@ -323,6 +324,18 @@ impl Default for Material {
             opacity: 1.0,
             maps: Maps::default(),
         }
+    }
+}
+
+impl Material {
+    /// Whether anything is mirrored or refracted.
+    pub fn has_impulse(&self) -> bool {
+        self.reflection != Vec3::ZERO || (self.transmission != Vec3::ZERO && self.eta.is_some())
+    }
+
+    /// Whether a ray may pass the surface as if it were not there.
+    pub fn has_holes(&self) -> bool {
+        self.opacity < 1.0 || self.maps.opacity.is_some()
     }
 }
 
