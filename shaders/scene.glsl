@@ -53,7 +53,6 @@ layout(set = 0, binding = 0, std140) uniform Frame {
     uint environment_width;      // in texels
     uint environment_height;
     float environment_rotation;  // in turns
-    uint padding[2];
     vec4 filter_table[65];       // inverse cumulative distribution of the pixel filter: 257 knots, in pixels
 } frame;
 

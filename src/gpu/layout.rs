@@ -68,7 +68,7 @@ shared! {
         /// Turns by which the environment is rotated.
         environment_rotation: f32,
         /// To a multiple of 16 bytes.
-        padding: [u32; 2],
+        padding: [u32; 3],
         /// The filter's inverse cumulative distribution: 257 knots, in pixels.
         filter_table: [[f32; 4]; 65],
     }

@@ -134,7 +134,7 @@ fn frame(scene: &Scene, table: &LuminaireTable) -> layout::Frame {
         environment_width,
         environment_height,
         environment_rotation: (f64::from(rotation) / 360.0).rem_euclid(1.0) as f32,
-        padding: [0; 2],
+        padding: [0; 3],
         filter_table,
     }
 }
