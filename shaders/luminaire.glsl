@@ -15,9 +15,12 @@ float power_heuristic(float own, float other) {
 }
 
 // Whether a triangle is so near to `p` that it is sampled by solid angle; if so, its corners' directions and that angle.
-bool is_near(vec3 p, vec3 a, vec3 b, vec3 c, float area, out vec3 v[3], out float omega) {
+bool is_near(vec3 p, vec3 a, vec3 b, vec3 c, vec3 normal, float area, out vec3 v[3], out float omega) {
     omega = 0.0;
     if (!SOLID_ANGLE) return false;
+    // In its own plane a point sees nothing of the triangle, but rounding might make that half of all directions.
+    float height = dot(normal, a - p);
+    if (height * height <= 1e-10 * area) return false;
     vec3 d = (a + b + c) * (1.0 / 3.0) - p;
     if (area <= 0.05 * dot(d, d)) return false;
     v[0] = normalize(a - p);
@@ -44,7 +47,7 @@ float triangle_density(vec3 p, vec3 wi, Hit hit, float area_density) {
     float area = 0.5 * double_area;
     vec3 v[3];
     float omega;
-    if (is_near(p, a, b, c, area, v, omega)) return area_density * area / omega;
+    if (is_near(p, a, b, c, normal / double_area, area, v, omega)) return area_density * area / omega;
     // Choosing the triangle is in proportion to its area, and the point on it to one over its area.
     return area_density * hit.t * hit.t * double_area / abs(dot(normal, wi));
 }
@@ -82,7 +85,7 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, uvec4 random, float rest
         float double_area = 2.0 * light.b.w;
         vec3 v[3];
         float omega;
-        if (area && is_near(s.position, light.a.xyz, light.b.xyz, light.c.xyz, light.b.w, v, omega)) {
+        if (area && is_near(s.position, light.a.xyz, light.b.xyz, light.c.xyz, light.normal.xyz, light.b.w, v, omega)) {
             wi = spherical_triangle(v, omega, uniform2(random.yz));
             float t = dot(light.normal.xyz, light.a.xyz - s.position) / dot(light.normal.xyz, wi);
             target = s.position + t * wi;

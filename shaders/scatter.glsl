@@ -20,10 +20,12 @@ vec4 bsdf_and_pdf(Surfel s, Material material, vec3 wo, vec3 wi) {
     float pdf = DIRECTIONS == DIRECTIONS_UNIFORM ? 0.5 / PI : cosine * (1.0 / PI);
     if (GLOSSY && material.glossy.rgb != vec3(0.0)) {
         vec3 h = normalize(wi + wo);
-        // cos^m by the sine, which is exact where m is large and the cosine nearly 1.
+        // cos^m: near the normal by the sine, because rounding a cosine of nearly 1 shows m times.
         vec3 sine = cross(s.shading_normal, h);
+        float sine2 = dot(sine, sine);
+        float log_cosine = sine2 < 0.5 ? 0.5 * log_one_minus(sine2) : log(max(dot(s.shading_normal, h), 1e-18));
         float m = material.glossy.w;
-        float lobe = exp(0.5 * m * max(log_one_minus(min(dot(sine, sine), 1.0)), -1e4));
+        float lobe = exp(m * log_cosine);
         f += material.glossy.rgb * (material.ambient.w * lobe);
         if (DIRECTIONS == DIRECTIONS_BSDF) {
             float half_vector = (m + 1.0) * (0.5 / PI) * lobe / (4.0 * abs(dot(wo, h)));

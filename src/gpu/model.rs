@@ -110,7 +110,8 @@ impl KernelModel {
         let (simple, estimator) = match self.integrator {
             // It samples light as the first slides do, and never goes on.
             Integrator::Simple { .. } => {
-                (true, Estimator { light_sampling: LightSampling::Direct, ..Estimator::default() })
+                let (light_sampling, area_sampling) = (LightSampling::Direct, AreaSampling::Area);
+                (true, Estimator { light_sampling, area_sampling, ..Estimator::default() })
             }
             Integrator::Path(estimator) => (false, estimator),
         };
