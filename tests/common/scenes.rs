@@ -1,6 +1,6 @@
 //! Small scenes, built in code.
 
-use glam::{Affine3A, DVec3, Mat3, Vec3};
+use glam::{Affine3A, DVec2, DVec3, Mat3, Vec3};
 use luminaire::reference::surfel::Surfel;
 use luminaire::scene::*;
 use std::collections::HashMap;
@@ -174,14 +174,21 @@ pub fn transformed(scene: &Scene, scale: f32, shift: Vec3) -> Scene {
 /// A surfel at the origin whose normals are +z.
 pub fn flat_surfel(lambert: DVec3, glossy: DVec3, exponent: f64) -> Surfel {
     Surfel {
+        owner: [u32::MAX; 2],
         position: DVec3::ZERO,
         position_error: DVec3::ZERO,
         geometric_normal: DVec3::Z,
         shading_normal: DVec3::Z,
+        uv: DVec2::ZERO,
+        front: true,
         emission: DVec3::ZERO,
         ambient: DVec3::ZERO,
         lambert,
         glossy,
         exponent,
+        reflection: DVec3::ZERO,
+        transmission: DVec3::ZERO,
+        eta: None,
+        impulse_probability: None,
     }
 }
