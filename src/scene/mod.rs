@@ -6,6 +6,7 @@
 
 mod environment;
 mod estimator;
+mod filter;
 mod load;
 mod luminaire;
 mod material;
