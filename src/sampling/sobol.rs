@@ -4,7 +4,9 @@
 //! boxes of `2^-a` by `2^(a-k)` holds one. Nested uniform ("Owen") scrambling keeps that, makes every point uniform by itself,
 //! and lets the error of a smooth integrand fall with `N^-1.5` instead of `N^-0.5`. Further pairs of dimensions are the same
 //! sequence, scrambled differently and in an order of their own, so that pairs are independent of each other: Burley, "Practical
-//! Hash-Based Owen Scrambling", JCGT 9(4), 2020.
+//! Hash-Based Owen Scrambling", JCGT 9(4), 2020. What an integrand makes of two pairs together is found as by independent numbers, at
+//! worst with twice their variance (two samples that differ in the last bit of their index swap halves in every dimension), so what
+//! belongs together should be a pair.
 //!
 //! Numbers are 32-bit fractions. *Reversed* ones have their most significant bit, the first binary digit, in bit 0: there a
 //! multiplication carries from the larger to the smaller intervals, which is the direction in which the scrambling must work.
