@@ -40,6 +40,8 @@ pub struct Reference {
     /// None: every triangle is tested.
     trees: Option<Trees>,
     luminaires: LuminaireTable,
+    /// Inverse of the pixel filter's distribution; empty for the pixel's own square.
+    filter: Vec<f32>,
 }
 
 /// Where an object stands.
@@ -76,7 +78,9 @@ impl Reference {
                 Instance { to_world, to_object, normal_to_world: to_object.matrix3.transpose() }
             })
             .collect();
-        Reference { scene: scene.clone(), instances, trees: None, luminaires: LuminaireTable::new(scene) }
+        let film = &scene.film;
+        let filter = if film.is_pixel_square() { vec![] } else { film.filter.inverse_cdf(film.filter_radius) };
+        Reference { scene: scene.clone(), instances, trees: None, luminaires: LuminaireTable::new(scene), filter }
     }
 
     /// World-space corners of a triangle of an object.
