@@ -5,7 +5,8 @@ use luminaire::reference::surfel::Surfel;
 use luminaire::scene::*;
 use std::collections::HashMap;
 
-/// A scene without objects, to be filled by [`add`]: the sensor is at the origin and looks along -z, 60 degrees high; unlimited paths.
+/// A scene without objects, to be filled by [`add`]: the sensor is at the origin and looks along -z, 60 degrees high; unlimited paths. The
+/// random numbers are independent: statistics want independent samples.
 pub fn empty(width: u32, height: u32) -> Scene {
     Scene {
         path: "test".into(),
@@ -18,7 +19,7 @@ pub fn empty(width: u32, height: u32) -> Scene {
         sensor: pinhole(Vec3::ZERO, -Vec3::Z, Vec3::Y, 60.0),
         film: FilmSettings { width, height, filter: Filter::Box, filter_radius: 0.5 },
         integrator: Integrator::Path(Estimator::default()),
-        settings: RenderSettings::default(),
+        settings: RenderSettings { sampler: Sampler::Independent, ..RenderSettings::default() },
         warnings: vec![],
     }
 }
