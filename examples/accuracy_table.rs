@@ -59,8 +59,8 @@ fn main() {
         scene.film.height = (WIDTH * scene.film.height / scene.film.width).max(1);
         scene.film.width = WIDTH;
         let mut short = scene.clone();
-        if let Integrator::Path { max_bounces } = &mut short.integrator {
-            *max_bounces = Some(1);
+        if let Integrator::Path(estimator) = &mut short.integrator {
+            estimator.max_bounces = Some(1);
         }
         let short_reference = picture(&mut Reference::new(&short), &short, EQUAL);
         let reference = picture(&mut Reference::new(&scene), &scene, EQUAL);

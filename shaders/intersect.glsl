@@ -9,8 +9,10 @@ struct Hit {
     vec2 barycentric;    // weights of the second and third corner
 };
 
-// bool closest_hit(vec3 origin, vec3 direction, float t_max, out Hit hit);
-// bool occluded(vec3 origin, vec3 direction, float t_max);
+// `salt` decides about surfaces that are partly transparent (`covers` in texture.glsl).
+//
+// bool closest_hit(vec3 origin, vec3 direction, float t_max, uint salt, out Hit hit);
+// bool occluded(vec3 origin, vec3 direction, float t_max, uint salt);
 
 #define INFINITY uintBitsToFloat(0x7f800000u)
 

@@ -103,7 +103,7 @@ bool intersect_triangle(TraversalRay ray, float t_max, uint triangle, out float 
     return t > 0.0 && t < t_max;
 }
 
-bool traverse(vec3 origin, vec3 direction, float t_max, const bool any_hit, out Hit hit) {
+bool traverse(vec3 origin, vec3 direction, float t_max, uint salt, const bool any_hit, out Hit hit) {
     uvec2 stack[STACK_SIZE];
     int depth = 0;
     TraversalRay world = traversal_ray(origin, direction);
@@ -149,7 +149,7 @@ bool traverse(vec3 origin, vec3 direction, float t_max, const bool any_hit, out 
             } else {
                 float t;
                 vec2 barycentric;
-                if (intersect_triangle(ray, hit.t, index, t, barycentric)) {
+                if (intersect_triangle(ray, hit.t, index, t, barycentric) && (!HOLES || covers(salt, object, index, barycentric))) {
                     found = true;
                     if (any_hit) return true;
                     hit = Hit(t, object, index, barycentric);
@@ -170,11 +170,11 @@ bool traverse(vec3 origin, vec3 direction, float t_max, const bool any_hit, out 
     return found;
 }
 
-bool closest_hit(vec3 origin, vec3 direction, float t_max, out Hit hit) {
-    return traverse(origin, direction, t_max, false, hit);
+bool closest_hit(vec3 origin, vec3 direction, float t_max, uint salt, out Hit hit) {
+    return traverse(origin, direction, t_max, salt, false, hit);
 }
 
-bool occluded(vec3 origin, vec3 direction, float t_max) {
+bool occluded(vec3 origin, vec3 direction, float t_max, uint salt) {
     Hit hit;
-    return traverse(origin, direction, t_max, true, hit);
+    return traverse(origin, direction, t_max, salt, true, hit);
 }

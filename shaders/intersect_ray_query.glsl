@@ -2,23 +2,40 @@
 
 layout(set = 0, binding = 1) uniform accelerationStructureEXT top_level;
 
-bool closest_hit(vec3 origin, vec3 direction, float t_max, out Hit hit) {
+// Instances with holes are not opaque; their triangles come back as candidates.
+const uint RAY_FLAGS = HOLES ? gl_RayFlagsNoneEXT : gl_RayFlagsOpaqueEXT;
+
+// Index into `triangles` and `objects` of a candidate or of the committed hit.
+#define OBJECT_OF(query, committed) (INSTANCES ? uint(rayQueryGetIntersectionInstanceCustomIndexEXT(query, committed)) : 0u)
+#define TRIANGLE_OF(query, committed) \
+    (uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, committed)) \
+     + (INSTANCES ? objects[rayQueryGetIntersectionInstanceCustomIndexEXT(query, committed)].triangle_offset : 0u))
+
+// Traverses to the end; stops at a candidate by the rule of `covers`.
+#define PROCEED(query, salt) \
+    while (rayQueryProceedEXT(query)) { \
+        if (HOLES && rayQueryGetIntersectionTypeEXT(query, false) == gl_RayQueryCandidateIntersectionTriangleEXT \
+            && covers(salt, OBJECT_OF(query, false), TRIANGLE_OF(query, false), \
+                      rayQueryGetIntersectionBarycentricsEXT(query, false))) { \
+            rayQueryConfirmIntersectionEXT(query); \
+        } \
+    }
+
+bool closest_hit(vec3 origin, vec3 direction, float t_max, uint salt, out Hit hit) {
     rayQueryEXT query;
-    rayQueryInitializeEXT(query, top_level, gl_RayFlagsOpaqueEXT, 0xffu, origin, 0.0, direction, t_max);
-    while (rayQueryProceedEXT(query)) {}
+    rayQueryInitializeEXT(query, top_level, RAY_FLAGS, 0xffu, origin, 0.0, direction, t_max);
+    PROCEED(query, salt)
     if (rayQueryGetIntersectionTypeEXT(query, true) != gl_RayQueryCommittedIntersectionTriangleEXT) return false;
     hit.t = rayQueryGetIntersectionTEXT(query, true);
-    hit.object = INSTANCES ? uint(rayQueryGetIntersectionInstanceCustomIndexEXT(query, true)) : 0u;
-    hit.triangle = uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, true));
-    if (INSTANCES) hit.triangle += objects[hit.object].triangle_offset;
+    hit.object = OBJECT_OF(query, true);
+    hit.triangle = TRIANGLE_OF(query, true);
     hit.barycentric = rayQueryGetIntersectionBarycentricsEXT(query, true);
     return true;
 }
 
-bool occluded(vec3 origin, vec3 direction, float t_max) {
+bool occluded(vec3 origin, vec3 direction, float t_max, uint salt) {
     rayQueryEXT query;
-    rayQueryInitializeEXT(query, top_level, gl_RayFlagsOpaqueEXT | gl_RayFlagsTerminateOnFirstHitEXT, 0xffu, origin, 0.0,
-                          direction, t_max);
-    while (rayQueryProceedEXT(query)) {}
+    rayQueryInitializeEXT(query, top_level, RAY_FLAGS | gl_RayFlagsTerminateOnFirstHitEXT, 0xffu, origin, 0.0, direction, t_max);
+    PROCEED(query, salt)
     return rayQueryGetIntersectionTypeEXT(query, true) != gl_RayQueryCommittedIntersectionNoneEXT;
 }

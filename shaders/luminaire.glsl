@@ -1,4 +1,5 @@
-// Direct light (slides "Lighting Functions", "Shadows & Attenuation", "Area Luminaires"), with the density that they leave out.
+// Direct light (slides "Lighting Functions", "Shadows & Attenuation", "Area Luminaires"), with the densities that they leave out, and
+// the weights of light that is found twice.
 
 // One luminaire, in proportion to its power, by an alias table (twin: src/sampling/alias.rs).
 uint choose_luminaire(uint random) {
@@ -7,43 +8,139 @@ uint choose_luminaire(uint random) {
     return fraction < luminaires[slot].threshold ? slot : luminaires[slot].alias_index;
 }
 
-// Light from one luminaire that `s` sends towards `wo`; adds the shadow ray to `rays`.
-vec3 direct_light(Surfel s, Material material, vec3 wo, uvec4 random, inout uint rays) {
+// The power heuristic's weight of a density next to another one (Veach and Guibas 1995).
+float power_heuristic(float own, float other) {
+    float ratio = other / own;
+    return 1.0 / (1.0 + ratio * ratio);
+}
+
+// Whether a triangle is so near to `p` that it is sampled by solid angle; if so, its corners' directions and that angle.
+bool is_near(vec3 p, vec3 a, vec3 b, vec3 c, vec3 normal, float area, out vec3 v[3], out float omega) {
+    omega = 0.0;
+    if (!SOLID_ANGLE) return false;
+    // In its own plane a point sees nothing of the triangle, but rounding might make that half of all directions.
+    float height = dot(normal, a - p);
+    if (height * height <= 1e-10 * area) return false;
+    vec3 d = (a + b + c) * (1.0 / 3.0) - p;
+    if (area <= 0.05 * dot(d, d)) return false;
+    v[0] = normalize(a - p);
+    v[1] = normalize(b - p);
+    v[2] = normalize(c - p);
+    omega = solid_angle(v);
+    return omega > 1e-3;
+}
+
+// The density per steradian with which direct_light at `p` gives the direction in which a ray from there met an emissive triangle.
+float triangle_density(vec3 p, vec3 wi, Hit hit, float area_density) {
+    int base = int(hit.triangle) * 3;
+    vec3 a = uintBitsToFloat(texelFetch(triangles, base).xyz);
+    vec3 b = uintBitsToFloat(texelFetch(triangles, base + 1).xyz);
+    vec3 c = uintBitsToFloat(texelFetch(triangles, base + 2).xyz);
+    if (INSTANCES) {
+        vec4 to_world[3] = objects[hit.object].object_to_world;
+        a = row_dot(to_world, a) + translation(to_world);
+        b = row_dot(to_world, b) + translation(to_world);
+        c = row_dot(to_world, c) + translation(to_world);
+    }
+    vec3 normal = cross(b - a, c - a);
+    float double_area = length(normal);
+    float area = 0.5 * double_area;
+    vec3 v[3];
+    float omega;
+    if (is_near(p, a, b, c, normal / double_area, area, v, omega)) return area_density * area / omega;
+    // Choosing the triangle is in proportion to its area, and the point on it to one over its area.
+    return area_density * hit.t * hit.t * double_area / abs(dot(normal, wi));
+}
+
+// The weight of emission that a ray with the density `pdf` found, where `density` is that of direct light. Impulses have an infinite pdf.
+float emission_weight(float pdf, float density) {
+    if (LIGHT_SAMPLING == LIGHT_NONE || pdf == INFINITY) return 1.0;
+    if (LIGHT_SAMPLING == LIGHT_DIRECT) return 0.0;
+    return power_heuristic(pdf, density);
+}
+
+// Light from one luminaire that `s` sends towards `wo`; `rest` is the probability that a path takes no impulse there. Adds the shadow
+// ray to `rays`.
+vec3 direct_light(Surfel s, Material material, vec3 wo, uvec4 random, float rest, uint salt, inout uint rays) {
     if (frame.luminaire_count == 0u) return vec3(0.0);
     Luminaire light = luminaires[choose_luminaire(random.x)];
-    // Unshadowed radiance, and the shadow ray that must reach (0, t_max) unhindered.
+    // With one kind of luminaire in the scene these are constants.
+    bool several = int(POINT_LUMINAIRES) + int(INFINITE_LUMINAIRES) + int(AREA_LUMINAIRES) + int(ENVIRONMENT) > 1;
+    bool infinite = INFINITE_LUMINAIRES && (!several || light.kind == INFINITE);
+    bool area = AREA_LUMINAIRES && (!several || light.kind == AREA);
+    bool surroundings = ENVIRONMENT && (!several || light.kind == SURROUNDINGS);
+    // Unshadowed radiance over the density of finding it, and the shadow ray that must reach (0, t_max) unhindered.
     vec3 target = light.a.xyz;
     vec3 wi = target;
     vec3 incident = light.radiance.rgb / light.radiance.w;
-    // With one kind of luminaire in the scene these are constants.
-    bool infinite = INFINITE_LUMINAIRES && (!(POINT_LUMINAIRES || AREA_LUMINAIRES) || light.kind == INFINITE);
-    bool area = AREA_LUMINAIRES && (!(POINT_LUMINAIRES || INFINITE_LUMINAIRES) || light.kind == AREA);
-    float t_max = infinite ? INFINITY : 1.0;
-    if (!infinite) {
-        if (area) {
-            vec3 w = uniform_triangle(uniform2(random.yz));
-            target = w.x * light.a.xyz + w.y * light.b.xyz + w.z * light.c.xyz;
+    float density = 0.0;      // per steradian; 0 where no other ray can find the light
+    float target_error = light.c.w;
+    float t_max = INFINITY;
+    if (surroundings) {
+        wi = sample_environment(random.w, uniform2(random.yz), density);
+        incident = environment_radiance(wi) / (density * light.radiance.w);
+        density *= light.radiance.w;
+    } else if (!infinite) {
+        t_max = 1.0;
+        float double_area = 2.0 * light.b.w;
+        vec3 v[3];
+        float omega;
+        if (area && is_near(s.position, light.a.xyz, light.b.xyz, light.c.xyz, light.normal.xyz, light.b.w, v, omega)) {
+            wi = spherical_triangle(v, omega, uniform2(random.yz));
+            float t = dot(light.normal.xyz, light.a.xyz - s.position) / dot(light.normal.xyz, wi);
+            target = s.position + t * wi;
+            target_error += gamma(8.0) * (largest(abs(s.position)) + largest(abs(light.a.xyz)));
+            incident *= omega;
+            density = light.radiance.w / omega;
+            // The plane may be missed where the triangle is seen edge-on.
+            if (!(t > 0.0)) return vec3(0.0);
+        } else {
+            if (area) {
+                vec3 w = uniform_triangle(uniform2(random.yz));
+                target = w.x * light.a.xyz + w.y * light.b.xyz + w.z * light.c.xyz;
+            }
+            vec3 d = target - s.position;
+            float distance2 = dot(d, d);
+            if (distance2 == 0.0) return vec3(0.0);
+            wi = d * inversesqrt(distance2);
+            incident /= distance2;
+            if (area) {
+                float cosine = light.b.w * abs(dot(light.normal.xyz, wi));
+                incident *= cosine;
+                density = light.radiance.w * distance2 / cosine;
+            }
         }
-        vec3 d = target - s.position;
-        float distance2 = dot(d, d);
-        if (distance2 == 0.0) return vec3(0.0);
-        wi = d * inversesqrt(distance2);
-        incident /= distance2;
-        if (area) incident *= light.b.w * abs(dot(light.normal.xyz, wi));
     }
-    vec3 radiance = bsdf(s, material, wo, wi) * dot(s.shading_normal, wi) * incident;
+    vec4 f = bsdf_and_pdf(s, material, wo, wi);
+    vec3 radiance = f.rgb * dot(s.shading_normal, wi) * incident;
     if (radiance == vec3(0.0)) return vec3(0.0);
+    if (LIGHT_SAMPLING == LIGHT_MIS && (area || surroundings)) radiance *= power_heuristic(density, f.w * rest);
+
+    if (area && (TEXTURES || HOLES)) {
+        uint emission_map = materials[light.material].maps.w;
+        bool partly = HOLES && (materials[light.material].transmission.w < 1.0 || materials[light.material].opacity_map != NONE);
+        if (emission_map != NONE || partly) {
+            // Where on the triangle the target lies, by areas.
+            vec3 ab = light.b.xyz - light.a.xyz;
+            vec3 ac = light.c.xyz - light.a.xyz;
+            vec3 ap = target - light.a.xyz;
+            vec2 barycentric = vec2(dot(cross(ap, ac), light.normal.xyz), dot(cross(ab, ap), light.normal.xyz)) / (2.0 * light.b.w);
+            if (TEXTURES && emission_map != NONE) radiance *= texture_at(emission_map, uv_at(light.triangle, barycentric)).rgb;
+            if (partly) radiance *= opacity_at(light.material, light.triangle, barycentric);
+            if (radiance == vec3(0.0)) return vec3(0.0);
+        }
+    }
 
     vec3 origin = offset_ray_origin(s.position, s.position_error, s.geometric_normal, wi);
     vec3 direction = wi;
-    if (!infinite) {
+    if (!infinite && !surroundings) {
         if (area) {
-            target = offset_ray_origin(target, vec3(light.c.w), light.normal.xyz, -wi);
+            target = offset_ray_origin(target, vec3(target_error), light.normal.xyz, -wi);
             // The end of the segment rounds by its length: stop eight units in the last place before it.
             t_max = 1.0 - 9.5367432e-7;
         }
         direction = target - origin;
     }
     rays++;
-    return occluded(origin, direction, t_max) ? vec3(0.0) : radiance;
+    return occluded(origin, direction, t_max, salt) ? vec3(0.0) : radiance;
 }

@@ -1,4 +1,4 @@
-// The estimator (slides "Path Trace Function" to "Recursion"): the recursion as a loop with a throughput.
+// The estimator (slides "Path Trace Function" to "Adding Transmission"): the recursion as a loop with a throughput.
 
 struct Path {
     vec3 origin;        // of the ray to trace next
@@ -6,10 +6,15 @@ struct Path {
     vec3 throughput;    // what a unit of radiance along that ray adds to the pixel
     vec3 radiance;      // what was found so far
     uint bounce;        // surfaces met so far
+    float pdf;          // density per steradian with which the direction was chosen; infinite for the camera's and for impulses
+    float eta_scale;    // product of the squared relative indices that were passed, by which refraction diluted the throughput
+    vec3 albedo;        // product of the albedos (combinedAlbedo)
 };
 
 Path camera_path(uvec2 pixel, uint pixel_index, uint sample_index) {
-    return Path(frame.position.xyz, sensor_ray(pixel, pixel_index, sample_index), vec3(1.0), vec3(0.0), 0u);
+    vec3 origin, direction;
+    sensor_ray(pixel, pixel_index, sample_index, origin, direction);
+    return Path(origin, direction, vec3(1.0), vec3(0.0), 0u, INFINITY, 1.0, vec3(1.0));
 }
 
 // Traces the path's ray and whatever happens at the surface it meets: once through the loop of `radiance` in the reference.
@@ -17,28 +22,70 @@ Path camera_path(uvec2 pixel, uint pixel_index, uint sample_index) {
 bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uint rays) {
     Hit hit;
     rays++;
-    // Escaping light disappears.
-    if (!closest_hit(path.origin, path.direction, INFINITY, hit)) return false;
+    uint salt = HOLES ? ray_salt(pixel_index, sample_index, 2u * path.bounce, frame.seed) : 0u;
+    if (!closest_hit(path.origin, path.direction, INFINITY, salt, hit)) {
+        // Without an environment escaping light disappears.
+        if (ENVIRONMENT) {
+            float density = 0.0;
+            if (LIGHT_SAMPLING == LIGHT_MIS && path.pdf != INFINITY) {
+                density = frame.environment.w * environment_density(path.direction);
+            }
+            float weight = emission_weight(path.pdf, density);
+            if (weight > 0.0) path.radiance += path.throughput * environment_radiance(path.direction) * weight;
+        }
+        return false;
+    }
     vec3 wo = -path.direction;
     Surfel s = surfel(hit, wo);
-    Material material = materials[s.material];
+    Material material = material_at(s);
 
-    // Light sampling has counted the emission that later bounces find.
-    if (AREA_LUMINAIRES && path.bounce == 0u) path.radiance += material.emission.rgb;
+    if (AREA_LUMINAIRES && material.emission.rgb != vec3(0.0)) {
+        float density = 0.0;
+        if (LIGHT_SAMPLING == LIGHT_MIS && path.pdf != INFINITY) {
+            density = triangle_density(path.origin, path.direction, hit, material.emission.w);
+        }
+        path.radiance += path.throughput * material.emission.rgb * emission_weight(path.pdf, density);
+    }
     if (SIMPLE) path.radiance += frame.ambient.rgb * material.ambient.rgb;
-    uvec4 random = random4(pixel_index, sample_index, light_block(path.bounce), frame.seed);
-    path.radiance += path.throughput * direct_light(s, material, wo, random, rays);
-    if (SIMPLE || path.bounce == frame.max_bounces) return false;
+    // One bounce more than allowed: only the emission was still direct light.
+    if (!SIMPLE && path.bounce > frame.max_bounces) return false;
 
-    // Extinction; the survivor carries the weight of those that did not.
-    float alive = survival(material);
-    if (uniform1(random.w) >= alive) return false;
-    uvec4 turn = random4(pixel_index, sample_index, scatter_block(path.bounce), frame.seed);
-    vec3 wi;
-    path.throughput *= scatter(s, material, wo, uniform2(turn.xy), wi) / alive;
+    Impulses i = impulses(s, material, wo);
+    bool glossy_or_lambert = material.lambert.rgb != vec3(0.0) || (GLOSSY && material.glossy.rgb != vec3(0.0));
+    if (LIGHT_SAMPLING != LIGHT_NONE && (!IMPULSES || glossy_or_lambert)) {
+        uvec4 random = numbers(pixel_index, sample_index, light_block(path.bounce), frame.seed);
+        salt = HOLES ? ray_salt(pixel_index, sample_index, 2u * path.bounce + 1u, frame.seed) : 0u;
+        path.radiance += path.throughput * direct_light(s, material, wo, random, 1.0 - i.probability, salt, rays);
+    }
+    if (SIMPLE) return false;
+    bool last = path.bounce == frame.max_bounces;
+    // Direct light has found all but what impulses find.
+    if (last && LIGHT_SAMPLING == LIGHT_DIRECT && !IMPULSES) return false;
+
+    uvec4 random = numbers(pixel_index, sample_index, scatter_block(path.bounce), frame.seed);
+    if (EXTINCTION == EXTINCTION_LITERAL || EXTINCTION == EXTINCTION_SURFACE) {
+        float alive = survival(material);
+        if (uniform1(random.w) >= alive) return false;
+        // The survivors stand for those that ended; the slide forgets that.
+        if (EXTINCTION == EXTINCTION_SURFACE) path.throughput /= alive;
+    }
+    Scattering next = scatter(s, material, i, wo, random);
+    if (last && LIGHT_SAMPLING == LIGHT_DIRECT && next.pdf != INFINITY) return false;
+    path.throughput *= next.weight / next.eta2;
     if (path.throughput == vec3(0.0)) return false;
-    path.origin = offset_ray_origin(s.position, s.position_error, s.geometric_normal, wi);
-    path.direction = wi;
+    if (THRESHOLD) {
+        path.albedo *= next.weight;
+        if (largest(path.albedo) < frame.albedo_threshold) return false;
+    }
+    if (EXTINCTION == EXTINCTION_THROUGHPUT) {
+        if (DIELECTRICS) path.eta_scale *= next.eta2;
+        float alive = min(largest(path.throughput) * (DIELECTRICS ? path.eta_scale : 1.0), MAX_SURVIVAL);
+        if (uniform1(random.w) >= alive) return false;
+        path.throughput /= alive;
+    }
+    path.origin = offset_ray_origin(s.position, s.position_error, s.geometric_normal, next.wi);
+    path.direction = next.wi;
+    path.pdf = next.pdf;
     path.bounce++;
     return true;
 }

@@ -6,6 +6,8 @@ struct Surfel {
     vec3 geometric_normal;    // unit, on the side of wo
     vec3 shading_normal;      // unit, on the side of wo
     uint material;
+    bool front;               // wo is on the outward side
+    vec2 uv;                  // where TEXTURES
 };
 
 // Bound on the relative error of n roundings (Higham).
@@ -40,6 +42,7 @@ Surfel surfel(Hit hit, vec3 wo) {
     float narrow = min(size * size / largest(abs(s.geometric_normal)), 256.0);
     s.position_error = gamma(7.0) * (abs(pa) + abs(pb) + abs(pc)) + gamma(4.0) * size * narrow;
     s.material = t0.w;
+    if (TEXTURES) s.uv = uv_at(hit.triangle, w);
 
     vec3 n = vec3(0.0);
     if (VERTEX_NORMALS) {
@@ -67,7 +70,10 @@ Surfel surfel(Hit hit, vec3 wo) {
 
     // Divided first, so that the squares of a small triangle's normal do not vanish.
     s.geometric_normal = normalize(s.geometric_normal / largest(abs(s.geometric_normal)));
-    if (dot(s.geometric_normal, wo) < 0.0) s.geometric_normal = -s.geometric_normal;
+    // Outward is where the winding is counter-clockwise, unless the vertex normals know better.
+    if (VERTEX_NORMALS && dot(n, s.geometric_normal) < 0.0) s.geometric_normal = -s.geometric_normal;
+    s.front = dot(s.geometric_normal, wo) >= 0.0;
+    if (!s.front) s.geometric_normal = -s.geometric_normal;
     s.shading_normal = s.geometric_normal;
     if (VERTEX_NORMALS && n != vec3(0.0)) {
         n = normalize(n);
@@ -76,6 +82,18 @@ Surfel surfel(Hit hit, vec3 wo) {
         if (dot(n, wo) > 0.0) s.shading_normal = n;
     }
     return s;
+}
+
+// The material with its textures.
+Material material_at(Surfel s) {
+    Material material = materials[s.material];
+    if (TEXTURES) {
+        if (SIMPLE && material.maps.x != NONE) material.ambient.rgb *= texture_at(material.maps.x, s.uv).rgb;
+        if (material.maps.y != NONE) material.lambert.rgb *= texture_at(material.maps.y, s.uv).rgb;
+        if (GLOSSY && material.maps.z != NONE) material.glossy.rgb *= texture_at(material.maps.z, s.uv).rgb;
+        if (AREA_LUMINAIRES && material.maps.w != NONE) material.emission.rgb *= texture_at(material.maps.w, s.uv).rgb;
+    }
+    return material;
 }
 
 float next_away(float x, float towards) {

@@ -12,6 +12,33 @@ vec2 sin_cos_quarter(float x) {
     return vec2(s, c);
 }
 
+// sin and cos of 2 pi `turns`, to two units in the last place of 1.
+vec2 sin_cos_turns(float turns) {
+    float quarter = round(4.0 * turns);
+    vec2 sc = sin_cos_quarter((turns - 0.25 * quarter) * (2.0 * PI));
+    int q = int(quarter) & 3;
+    if ((q & 1) == 1) sc = vec2(sc.y, -sc.x);
+    return q >= 2 ? -sc : sc;
+}
+
+// The angle of (x, y) in (-pi, pi], to three units in the last place (Cephes' polynomial); 0 for (0, 0).
+float angle(float y, float x) {
+    float ax = abs(x);
+    float ay = abs(y);
+    float small = min(ax, ay);
+    float large = max(ax, ay);
+    if (large == 0.0) return 0.0;
+    // Above tan(pi / 8) the angle is measured from the diagonal.
+    bool upper = small > 0.4142135623730950 * large;
+    float t = upper ? (small - large) / (small + large) : small / large;
+    float z = t * t;
+    float a = t + t * z * (-3.33329491539e-1 + z * (1.99777106478e-1 + z * (-1.38776856032e-1 + z * 8.05374449538e-2)));
+    if (upper) a += QUARTER_PI;
+    if (ay > ax) a = 2.0 * QUARTER_PI - a;
+    if (x < 0.0) a = PI - a;
+    return y < 0.0 ? -a : a;
+}
+
 // Shirley and Chiu's concentric map to the unit disk.
 vec2 concentric_disk(vec2 u) {
     vec2 p = 2.0 * u - 1.0;
@@ -28,6 +55,32 @@ vec2 concentric_disk(vec2 u) {
 vec3 cosine_hemisphere(vec2 u) {
     vec2 d = concentric_disk(u);
     return vec3(d, sqrt(max(0.0, 1.0 - dot(d, d))));
+}
+
+// Density 1 / 2 pi about +z.
+vec3 uniform_hemisphere(vec2 u) {
+    float z = 1.0 - u.x;
+    vec2 sc = sin_cos_turns(u.y);
+    return vec3(sqrt(max(0.0, u.x * (1.0 + z))) * sc.yx, z);
+}
+
+// 1 - exp(x) for x <= 0, without cancellation near 0.
+float one_minus_exp(float x) {
+    if (x < -0.125) return 1.0 - exp(x);
+    return -x * (1.0 + x * (1.0 / 2.0 + x * (1.0 / 6.0 + x * (1.0 / 24.0 + x * (1.0 / 120.0)))));
+}
+
+// ln(1 - x) for 0 <= x <= 1, without cancellation near 0.
+float log_one_minus(float x) {
+    if (x > 0.0625) return log(1.0 - x);
+    return -x * (1.0 + x * (1.0 / 2.0 + x * (1.0 / 3.0 + x * (1.0 / 4.0 + x * (1.0 / 5.0 + x * (1.0 / 6.0))))));
+}
+
+// A half vector about +z with density (m + 1) / 2 pi cos^m. The sine is computed first: for large m the cosine is nearly 1.
+vec3 glossy_half_vector(float m, vec2 u) {
+    float sine2 = one_minus_exp(2.0 / (m + 1.0) * log_one_minus(u.x));
+    vec2 sc = sin_cos_turns(u.y);
+    return vec3(sqrt(sine2) * sc.yx, sqrt(max(0.0, 1.0 - sine2)));
 }
 
 // From the frame in which `n` is +z to the world: Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017.
@@ -51,4 +104,26 @@ vec3 uniform_triangle(vec2 u) {
         b0 = u.x - b1;
     }
     return vec3(b0, b1, 1.0 - b0 - b1);
+}
+
+// Solid angle of the triangle whose corners lie in the directions `v` (unit vectors): Van Oosterom and Strackee 1983.
+float solid_angle(vec3 v[3]) {
+    float volume = abs(dot(v[0], cross(v[1], v[2])));
+    return 2.0 * angle(volume, 1.0 + dot(v[0], v[1]) + dot(v[0], v[2]) + dot(v[1], v[2]));
+}
+
+// A direction in that triangle, evenly over its solid angle: Peters, "BRDF Importance Sampling for Polygonal Lights", SIGGRAPH 2021.
+vec3 spherical_triangle(vec3 v[3], float omega, vec2 u) {
+    float g0 = abs(dot(v[0], cross(v[1], v[2])));
+    float g1 = dot(v[0], v[2]) + dot(v[1], v[2]);
+    float g2 = 1.0 + dot(v[0], v[1]);
+    // The part of the triangle between the first two corners and a new one on the opposite edge has u.x of the solid angle.
+    vec2 sc = sin_cos_turns(omega * u.x * (0.25 / PI));
+    vec3 offset = v[0] * (g0 * sc.y - g1 * sc.x) + v[2] * (g2 * sc.x);
+    vec3 corner = offset * (2.0 * dot(v[0], offset) / dot(offset, offset)) - v[0];
+    // Then a point between the second corner and the new one.
+    float d = dot(v[1], corner);
+    float z = 1.0 - u.y * (1.0 - d);
+    vec3 tangent = corner - d * v[1];
+    return normalize(z * v[1] + sqrt(max(0.0, 1.0 - z * z) / max(1e-20, dot(tangent, tangent))) * tangent);
 }

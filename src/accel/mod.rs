@@ -11,7 +11,7 @@ use crate::gpu::{Binding, Buffer, Device, TexelBuffer};
 use crate::scene::{Scene, widen};
 use crate::{Error, Result};
 use ash::vk;
-use glam::{DAffine3, Vec3};
+use glam::{DAffine3, Vec2, Vec3};
 use std::sync::Arc;
 
 /// A scene's geometry on a device.
@@ -19,6 +19,7 @@ pub struct Geometry {
     intersector: Intersector,
     triangles: TexelBuffer,
     normals: TexelBuffer,
+    uvs: TexelBuffer,
     objects: Buffer,
 }
 
@@ -29,11 +30,17 @@ enum Intersector {
 }
 
 impl Geometry {
-    /// Uploads a scene and builds what rays are traced against. What the kernel does not model is left out.
+    /// Uploads a scene and builds what rays are traced against; also says where each mesh's triangles came to lie. What the kernel
+    /// does not model is left out.
     ///
     /// # Errors
     /// If the scene is beyond a limit of the device, or the driver fails.
-    pub fn build(device: &Arc<Device>, scene: &Scene, ray_query: bool, model: &KernelModel) -> Result<Self> {
+    pub fn build(
+        device: &Arc<Device>,
+        scene: &Scene,
+        ray_query: bool,
+        model: &KernelModel,
+    ) -> Result<(Self, Vec<MeshBvh>)> {
         if ray_query {
             Self::build_ray_query(device, scene, model)
         } else {
@@ -41,8 +48,8 @@ impl Geometry {
         }
     }
 
-    fn build_compute_bvh(device: &Arc<Device>, scene: &Scene, model: &KernelModel) -> Result<Self> {
-        let bvh = TwoLevelBvh::build(scene, model.instances);
+    fn build_compute_bvh(device: &Arc<Device>, scene: &Scene, model: &KernelModel) -> Result<(Self, Vec<MeshBvh>)> {
+        let bvh = TwoLevelBvh::build(scene, model.features.instances);
         if bvh.stack_depth > STACK_SIZE {
             return Err(Error::Limit {
                 what: "the BVH".into(),
@@ -55,12 +62,14 @@ impl Geometry {
             });
         }
         let nodes = TexelBuffer::new(device, "BVH nodes", &bvh.nodes, vk::BufferUsageFlags::empty())?;
-        Self::with_order(device, scene, model, &bvh.meshes, &bvh.object_order, vk::BufferUsageFlags::empty(), |_, _| {
+        let usage = vk::BufferUsageFlags::empty();
+        let geometry = Self::with_order(device, scene, model, &bvh.meshes, &bvh.object_order, usage, |_, _| {
             Ok(Intersector::ComputeBvh(nodes))
-        })
+        })?;
+        Ok((geometry, bvh.meshes))
     }
 
-    fn build_ray_query(device: &Arc<Device>, scene: &Scene, model: &KernelModel) -> Result<Self> {
+    fn build_ray_query(device: &Arc<Device>, scene: &Scene, model: &KernelModel) -> Result<(Self, Vec<MeshBvh>)> {
         let mut triangle_offset = 0;
         let meshes: Vec<MeshBvh> = scene
             .meshes
@@ -89,9 +98,11 @@ impl Geometry {
             scene.objects.iter().map(|o| o.object_to_world.transform_point3(mesh_centres[o.mesh as usize])).collect();
         let usage = vk::BufferUsageFlags::SHADER_DEVICE_ADDRESS
             | vk::BufferUsageFlags::ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_KHR;
-        Self::with_order(device, scene, model, &meshes, &spatial_order(&centres), usage, |triangles, objects| {
+        let order = spatial_order(&centres);
+        let geometry = Self::with_order(device, scene, model, &meshes, &order, usage, |triangles, objects| {
             ray_query::TopLevel::build(device, scene, &meshes, triangles, objects).map(Intersector::RayQuery)
-        })
+        })?;
+        Ok((geometry, meshes))
     }
 
     /// Uploads triangles, normals and objects in the given order.
@@ -106,7 +117,10 @@ impl Geometry {
     ) -> Result<Self> {
         let count: usize = meshes.iter().map(|m| m.order.len()).sum();
         let mut triangles: Vec<[u32; 4]> = Vec::with_capacity(3 * count);
-        let mut normals: Vec<[u32; 4]> = Vec::with_capacity(if model.vertex_normals { 3 * count } else { 0 });
+        let vertex_normals = model.features.vertex_normals;
+        let textured = model.features.textures || model.features.holes;
+        let mut normals: Vec<[u32; 4]> = Vec::with_capacity(if vertex_normals { 3 * count } else { 0 });
+        let mut uvs: Vec<[u32; 4]> = Vec::with_capacity(if textured { 2 * count } else { 0 });
         let texel = |v: Vec3, w: u32| [v.x.to_bits(), v.y.to_bits(), v.z.to_bits(), w];
         for (mesh, place) in scene.meshes.iter().zip(meshes) {
             for &index in &place.order {
@@ -114,9 +128,15 @@ impl Geometry {
                 let extra = [triangle.material, index, 0];
                 for (corner, vertex) in triangle.vertices.into_iter().enumerate() {
                     triangles.push(texel(mesh.positions[vertex as usize], extra[corner]));
-                    if model.vertex_normals {
+                    if vertex_normals {
                         normals.push(texel(mesh.normals.get(vertex as usize).copied().unwrap_or(Vec3::ZERO), 0));
                     }
+                }
+                if textured {
+                    let [a, b, c] = triangle
+                        .vertices
+                        .map(|v| mesh.uvs.get(v as usize).copied().unwrap_or(Vec2::ZERO).to_array().map(f32::to_bits));
+                    uvs.extend([[a[0], a[1], b[0], b[1]], [c[0], c[1], 0, 0]]);
                 }
             }
         }
@@ -138,17 +158,24 @@ impl Geometry {
             .collect();
         let triangles = TexelBuffer::new(device, "triangles", &triangles, usage)?;
         let normals = TexelBuffer::new(device, "normals", &normals, vk::BufferUsageFlags::empty())?;
+        let uvs = TexelBuffer::new(device, "texture coordinates", &uvs, vk::BufferUsageFlags::empty())?;
         let intersector = intersector(&triangles, &objects)?;
-        Ok(Geometry { intersector, triangles, normals, objects: Buffer::storage(device, "objects", &objects)? })
+        Ok(Geometry { intersector, triangles, normals, uvs, objects: Buffer::storage(device, "objects", &objects)? })
     }
 
-    /// Bindings 1 to 4.
-    pub(crate) fn bindings(&self) -> [Binding<'_>; 4] {
+    /// Bindings 1 to 4 and 9.
+    pub(crate) fn bindings(&self) -> [Binding<'_>; 5] {
         let intersector = match &self.intersector {
             Intersector::ComputeBvh(nodes) => Binding::Texel(nodes),
             Intersector::RayQuery(top) => Binding::AccelerationStructure(top.handle()),
         };
-        [intersector, Binding::Texel(&self.triangles), Binding::Texel(&self.normals), Binding::Storage(&self.objects)]
+        [
+            intersector,
+            Binding::Texel(&self.triangles),
+            Binding::Texel(&self.normals),
+            Binding::Storage(&self.objects),
+            Binding::Texel(&self.uvs),
+        ]
     }
 }
 

@@ -77,7 +77,7 @@ impl TopLevel {
                     .acceleration_structure(bottom[mesh as usize].raw);
                 // SAFETY: the structure is alive.
                 let address = unsafe { loader.get_acceleration_structure_device_address(&info) };
-                instance_record(&object.object_to_world, place as u32, address)
+                instance_record(&object.object_to_world, place as u32, has_holes(scene, object.scene_index), address)
             })
             .collect();
         let usage = vk::BufferUsageFlags::SHADER_DEVICE_ADDRESS
@@ -95,13 +95,29 @@ impl TopLevel {
     }
 }
 
+/// Whether a ray may pass any triangle of an object.
+fn has_holes(scene: &Scene, object: u32) -> bool {
+    let object = &scene.objects[object as usize];
+    match object.material {
+        Some(material) => scene.materials[material as usize].has_holes(),
+        None => {
+            let holes: Vec<bool> = scene.materials.iter().map(|m| m.has_holes()).collect();
+            scene.meshes[object.mesh as usize].triangles.iter().any(|t| holes[t.material as usize])
+        }
+    }
+}
+
 /// A `VkAccelerationStructureInstanceKHR` as its bytes: 3x4 matrix, index and mask, flags, address.
-fn instance_record(rows: &[[f32; 4]; 3], index: u32, address: u64) -> [u8; 64] {
+fn instance_record(rows: &[[f32; 4]; 3], index: u32, holes: bool, address: u64) -> [u8; 64] {
     let mut record = [0u8; 64];
     record[..48].copy_from_slice(bytemuck::bytes_of(rows));
     record[48..52].copy_from_slice(&(index | 0xff00_0000).to_ne_bytes());
-    let flags = vk::GeometryInstanceFlagsKHR::TRIANGLE_FACING_CULL_DISABLE.as_raw() << 24;
-    record[52..56].copy_from_slice(&flags.to_ne_bytes());
+    let mut flags = vk::GeometryInstanceFlagsKHR::TRIANGLE_FACING_CULL_DISABLE;
+    if holes {
+        // The geometry says that it is opaque; instances that are not come back to the shader as candidates.
+        flags |= vk::GeometryInstanceFlagsKHR::FORCE_NO_OPAQUE;
+    }
+    record[52..56].copy_from_slice(&(flags.as_raw() << 24).to_ne_bytes());
     record[56..].copy_from_slice(&address.to_ne_bytes());
     record
 }

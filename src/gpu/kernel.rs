@@ -48,7 +48,7 @@ impl Kernel {
     pub fn new(
         device: &Arc<Device>,
         shader: &Shader,
-        constants: &[bool],
+        constants: &[u32],
         bindings: &[Binding<'_>],
         push_size: u32,
     ) -> Result<Self> {
@@ -109,12 +109,11 @@ impl Kernel {
             let module =
                 raw.create_shader_module(&module_info, None).map_err(|e| device.error("vkCreateShaderModule", e))?;
             device.set_name(module, name);
-            let values: Vec<u32> = constants.iter().map(|c| u32::from(*c)).collect();
-            let entries: Vec<_> = (0..values.len() as u32)
+            let entries: Vec<_> = (0..constants.len() as u32)
                 .map(|i| vk::SpecializationMapEntry { constant_id: i, offset: 4 * i, size: 4 })
                 .collect();
             let specialization =
-                vk::SpecializationInfo::default().map_entries(&entries).data(bytemuck::cast_slice(&values));
+                vk::SpecializationInfo::default().map_entries(&entries).data(bytemuck::cast_slice(constants));
             const MAIN: &CStr = c"main";
             let stage = vk::PipelineShaderStageCreateInfo::default()
                 .stage(vk::ShaderStageFlags::COMPUTE)

@@ -22,7 +22,7 @@ macro_rules! shared {
     ($(#[$doc:meta])* $name:ident { $($(#[$member_doc:meta])* $member:ident: $type:ty,)* }) => {
         $(#[$doc])*
         #[repr(C)]
-        #[derive(Debug, Clone, Copy, Default, PartialEq, Pod, Zeroable)]
+        #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
         pub struct $name { $($(#[$member_doc])* pub $member: $type,)* }
 
         impl $name {
@@ -39,12 +39,16 @@ shared! {
         position: [f32; 4],
         /// Unit line of sight.
         forward: [f32; 4],
-        /// To the right edge of the picture, at distance 1.
+        /// To the right edge of the picture: at distance 1, or of the parallel rays.
         right: [f32; 4],
         /// To the upper edge.
         up: [f32; 4],
+        /// Radius of the aperture, focus distance, blades, rotation in radians.
+        lens: [f32; 4],
         /// Ambient radiance of the simple ray tracer.
         ambient: [f32; 4],
+        /// Radiance of the environment, or a factor to its image; w: probability of choosing it.
+        environment: [f32; 4],
         /// Film width in pixels.
         width: u32,
         /// Film height in pixels.
@@ -55,8 +59,18 @@ shared! {
         luminaire_count: u32,
         /// Most indirect bounces; `u32::MAX` is no limit.
         max_bounces: u32,
+        /// A path of a smaller combined albedo ends.
+        albedo_threshold: f32,
+        /// Texels in a row of the environment.
+        environment_width: u32,
+        /// Rows of the environment.
+        environment_height: u32,
+        /// Turns by which the environment is rotated.
+        environment_rotation: f32,
         /// To a multiple of 16 bytes.
         padding: [u32; 3],
+        /// The filter's inverse cumulative distribution: 257 knots, in pixels.
+        filter_table: [[f32; 4]; 65],
     }
 }
 
@@ -83,12 +97,22 @@ shared! {
     Material {
         /// Ambient albedo; w: normalisation of the glossy lobe.
         ambient: [f32; 4],
-        /// Diffuse albedo; w: probability of survival.
+        /// Diffuse albedo; w: probability of an impulse, or -1: by the albedos.
         lambert: [f32; 4],
         /// Glossy albedo; w: exponent.
         glossy: [f32; 4],
-        /// Emitted radiance; w unused.
+        /// Emitted radiance; w: probability of choosing a triangle of this material for each unit of its area.
         emission: [f32; 4],
+        /// Albedo of the impulse reflection; w: eta, or 0: a mirror.
+        reflection: [f32; 4],
+        /// Albedo of the impulse transmission; w: opacity.
+        transmission: [f32; 4],
+        /// Textures that multiply ambient, lambert, glossy and emission; `u32::MAX`: none.
+        maps: [u32; 4],
+        /// Texture whose alpha multiplies the opacity.
+        opacity_map: u32,
+        /// To a multiple of 16 bytes.
+        padding: [u32; 3],
     }
 }
 
@@ -103,16 +127,20 @@ shared! {
         c: [f32; 4],
         /// Unit normal of the triangle; w unused.
         normal: [f32; 4],
-        /// Intensity, irradiance or radiance; w: probability of being chosen.
+        /// Intensity, irradiance or radiance without its texture; w: probability of being chosen.
         radiance: [f32; 4],
-        /// 0: point, 1: infinite, 2: area.
+        /// 0: point, 1: infinite, 2: area, 3: environment.
         kind: u32,
         /// Alias table: below it, this entry.
         threshold: u32,
         /// Alias table: else that one.
         alias_index: u32,
+        /// Area: the triangle, as the kernel counts them.
+        triangle: u32,
+        /// Area: its material.
+        material: u32,
         /// To a multiple of 16 bytes.
-        padding: u32,
+        padding: [u32; 3],
     }
 }
 

@@ -13,6 +13,7 @@ mod kernel;
 pub mod layout;
 pub mod model;
 pub mod probe;
+mod scene;
 mod shader;
 mod tracer;
 

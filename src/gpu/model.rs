@@ -1,25 +1,72 @@
 //! What the kernel models for a scene: no more than the scene needs.
 
-use crate::scene::{Integrator, Luminaire, LuminaireTable, SampledLuminaire, Scene};
+use crate::scene::{
+    AreaSampling, Directions, Estimator, Extinction, Filter, Integrator, LightSampling, Luminaire, LuminaireTable,
+    Material, Projection, SampledLuminaire, Sampler, Scene,
+};
 use glam::{Affine3A, Vec3};
 
-/// The switches of the kernel; each is a specialization constant of `shaders/scene.glsl`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct KernelModel {
-    /// The simple ray tracer in place of the path tracer.
-    pub simple: bool,
+macro_rules! features {
+    ($($(#[$doc:meta])* $name:ident: $text:literal,)*) => {
+        /// What a scene uses. Each is a specialization constant of `shaders/scene.glsl`, in this order; a `false` removes the code, and
+        /// the buffers that only this code reads shrink to the 16 bytes without which Vulkan does not bind them.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub struct Features { $($(#[$doc])* pub $name: bool,)* }
+
+        impl Features {
+            /// Everything: the kernel that can trace any scene.
+            pub const ALL: Features = Features { $($name: true,)* };
+            /// What each is called.
+            pub const NAMES: &[&str] = &[$($text,)*];
+
+            /// In the order of [`Features::NAMES`] and of the constants' ids.
+            pub fn values(&self) -> Vec<bool> {
+                vec![$(self.$name,)*]
+            }
+        }
+    };
+}
+
+features! {
     /// Some material has a glossy lobe.
-    pub glossy: bool,
+    glossy: "glossy lobe",
     /// Some mesh has vertex normals.
-    pub vertex_normals: bool,
+    vertex_normals: "vertex normals",
     /// More than one object, or a transform, or a material of the object's own.
-    pub instances: bool,
+    instances: "instances",
     /// Some luminaire is a point.
-    pub point_luminaires: bool,
+    point_luminaires: "point luminaires",
     /// Some luminaire is at infinity.
-    pub infinite_luminaires: bool,
+    infinite_luminaires: "luminaires at infinity",
     /// Some triangle emits.
-    pub area_luminaires: bool,
+    area_luminaires: "area luminaires",
+    /// Light comes from where rays escape to.
+    environment: "environment",
+    /// Some material reflects or transmits an impulse.
+    impulses: "impulses",
+    /// Some material has an index of refraction.
+    dielectrics: "dielectrics",
+    /// Some material has a map.
+    textures: "textures",
+    /// Some material is not opaque everywhere.
+    holes: "holes",
+    /// The pixel filter is not the box of one pixel.
+    filter: "pixel filter",
+    /// The sensor has a lens.
+    lens: "lens",
+}
+
+/// The kernel that runs: the scene's features, and the choices of its integrator.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct KernelModel {
+    /// What the scene uses.
+    pub features: Features,
+    /// The path tracer or the simple ray tracer.
+    pub integrator: Integrator,
+    /// Parallel rays in place of perspective.
+    pub orthographic: bool,
+    /// Where the random numbers come from.
+    pub sampler: Sampler,
 }
 
 impl KernelModel {
@@ -31,47 +78,85 @@ impl KernelModel {
     /// The same, where the luminaires are already known.
     pub(crate) fn with(scene: &Scene, table: &LuminaireTable) -> Self {
         let any = |kind: fn(&SampledLuminaire) -> bool| table.entries.iter().any(kind);
-        KernelModel {
-            simple: matches!(scene.integrator, Integrator::Simple { .. }),
-            glossy: scene.materials.iter().any(|m| m.glossy != Vec3::ZERO),
+        let material = |uses: fn(&Material) -> bool| scene.materials.iter().any(uses);
+        let features = Features {
+            glossy: material(|m| m.glossy != Vec3::ZERO),
             vertex_normals: scene.meshes.iter().any(|m| !m.normals.is_empty()),
             instances: scene.objects.len() > 1
                 || scene.objects.iter().any(|o| o.object_to_world != Affine3A::IDENTITY || o.material.is_some()),
             point_luminaires: any(|l| matches!(l, SampledLuminaire::Impulse(Luminaire::Point { .. }))),
             infinite_luminaires: any(|l| matches!(l, SampledLuminaire::Impulse(Luminaire::Infinite { .. }))),
             area_luminaires: any(|l| matches!(l, SampledLuminaire::Area(_))),
+            environment: any(|l| matches!(l, SampledLuminaire::Environment)),
+            impulses: material(Material::has_impulse),
+            dielectrics: material(|m| m.has_impulse() && m.eta.is_some()),
+            textures: material(|m| {
+                [m.maps.ambient, m.maps.lambert, m.maps.glossy, m.maps.emission].iter().any(Option::is_some)
+            }),
+            holes: material(Material::has_holes),
+            filter: scene.film.filter != Filter::Box || scene.film.filter_radius != 0.5,
+            lens: scene.sensor.lens.is_some(),
+        };
+        KernelModel {
+            features,
+            integrator: scene.integrator,
+            orthographic: matches!(scene.sensor.projection, Projection::Orthographic { .. }),
+            sampler: scene.settings.sampler,
         }
     }
 
-    /// In the order of the constants' ids.
-    pub(crate) fn constants(&self) -> [bool; 7] {
-        [
-            self.simple,
-            self.glossy,
-            self.vertex_normals,
-            self.instances,
-            self.point_luminaires,
-            self.infinite_luminaires,
-            self.area_luminaires,
-        ]
+    /// Values of the specialization constants, by their ids.
+    pub(crate) fn constants(&self) -> Vec<u32> {
+        let (simple, estimator) = match self.integrator {
+            // It samples light as the first slides do, and never goes on.
+            Integrator::Simple { .. } => {
+                let (light_sampling, area_sampling) = (LightSampling::Direct, AreaSampling::Area);
+                (true, Estimator { light_sampling, area_sampling, ..Estimator::default() })
+            }
+            Integrator::Path(estimator) => (false, estimator),
+        };
+        let mut constants: Vec<u32> = self.features.values().into_iter().map(u32::from).collect();
+        constants.extend([
+            u32::from(self.orthographic),
+            u32::from(self.sampler != Sampler::Independent),
+            u32::from(simple),
+            match estimator.light_sampling {
+                LightSampling::None => 0,
+                LightSampling::Direct => 1,
+                LightSampling::Mis => 2,
+            },
+            u32::from(estimator.area_sampling == AreaSampling::SolidAngle),
+            match estimator.directions {
+                Directions::Uniform => 0,
+                Directions::Cosine => 1,
+                Directions::Bsdf => 2,
+            },
+            match estimator.extinction {
+                Extinction::Off => 0,
+                Extinction::Literal => 1,
+                Extinction::Surface => 2,
+                Extinction::Throughput => 3,
+            },
+            u32::from(estimator.albedo_threshold.is_some()),
+        ]);
+        constants
     }
 }
 
 impl std::fmt::Display for KernelModel {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(if self.simple { "simple ray tracer" } else { "path tracer" })?;
+        f.write_str(match self.integrator {
+            Integrator::Simple { .. } => "simple ray tracer",
+            Integrator::Path(_) => "path tracer",
+        })?;
         f.write_str(", Lambert")?;
-        for (on, name) in [
-            (self.glossy, "glossy lobe"),
-            (self.vertex_normals, "vertex normals"),
-            (self.instances, "instances"),
-            (self.point_luminaires, "point luminaires"),
-            (self.infinite_luminaires, "luminaires at infinity"),
-            (self.area_luminaires, "area luminaires"),
-        ] {
+        for (on, name) in self.features.values().into_iter().zip(Features::NAMES) {
             if on {
                 write!(f, ", {name}")?;
             }
+        }
+        if self.orthographic {
+            f.write_str(", orthographic")?;
         }
         Ok(())
     }

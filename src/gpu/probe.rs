@@ -1,9 +1,9 @@
 //! Runs single shader functions over arrays, so that tests can hold each against its twin.
 
 use super::commands::{self, Recorder};
+use super::scene::GpuScene;
 use super::shader::Shader;
-use super::tracer::GpuScene;
-use super::{Binding, Buffer, Device, Kernel, layout};
+use super::{Buffer, Device, Kernel, layout};
 use crate::Result;
 use crate::scene::Scene;
 use ash::vk;
@@ -26,10 +26,34 @@ pub enum Function {
     UniformTriangle = 4,
     /// Random bits to an index into the luminaire table.
     ChooseLuminaire = 5,
-    /// (wo, material), (wi) to the BRDF on a surface whose normal is +z.
+    /// (wo, material), (wi) to (f without impulses, pdf) on a surface whose normal is +z.
     Bsdf = 6,
     /// A ray to its first hit, and mirrored off it to the second, which comes back as from `ClosestHit`.
     Leave = 7,
+    /// (u, v) to a direction about +z.
+    UniformHemisphere = 8,
+    /// (u, v, m) to a half vector about +z.
+    GlossyHalfVector = 9,
+    /// (wo, material), random numbers to (wi, pdf), (weight, eta^2) on a surface seen from outside whose normal is +z.
+    Scatter = 10,
+    /// (point, index into the luminaire table), (u, v) to (direction, solid angle); 0 where the triangle is sampled by area.
+    SphericalTriangle = 11,
+    /// random bits, u, v to (direction, density).
+    SampleEnvironment = 12,
+    /// A direction to (radiance, density).
+    EnvironmentAt = 13,
+    /// Texture, u, v to colour and alpha.
+    TextureAt = 14,
+    /// (wo, eta) to (direction, reflectance), the normal being +z.
+    Refract = 15,
+    /// Pixel x, y, index, sample to (origin), (direction).
+    SensorRay = 16,
+    /// pixel, sample, block, seed to the sampler's four numbers.
+    Numbers = 17,
+    /// pixel, sample, ray, seed and object, triangle to salt and number.
+    Coverage = 18,
+    /// (turns), (y, x) to sine, cosine, angle.
+    SinCos = 19,
 }
 
 /// Arguments or results of one call.
@@ -48,7 +72,7 @@ impl Probe {
     /// # Errors
     /// As for [`super::GpuTracer::new`].
     pub fn new(device: &Arc<Device>, scene: &Scene, ray_query: bool) -> Result<Self> {
-        let kernel_scene = GpuScene::new(device, scene, ray_query)?;
+        let kernel_scene = GpuScene::new(device, scene, ray_query, |_| {})?;
         Ok(Probe { kernel_scene, ray_query, device: device.clone() })
     }
 
@@ -70,14 +94,12 @@ impl Probe {
             vk::BufferUsageFlags::TRANSFER_DST,
             MemoryLocation::GpuToCpu,
         )?;
-        let mut bindings = self.kernel_scene.bindings();
-        bindings.extend([Binding::Storage(&output), Binding::Storage(&input)]);
         let push = layout::Call { function: function as u32, count: arguments.len() as u32 };
         let kernel = Kernel::new(
             device,
             Shader::probe(self.ray_query),
             &self.kernel_scene.model.constants(),
-            &bindings,
+            &self.kernel_scene.bindings(&output, &input),
             size_of::<layout::Call>() as u32,
         )?;
         commands::submit(device, "probe", |cmd| {

@@ -2,8 +2,13 @@
 //!
 //! Triangles are tested in world space, by brute force and through the trees alike: the trees only choose which triangles
 //! are tested, so the two give the same hits to the last bit.
+//!
+//! Where a surface is partly transparent, chance decides whether a ray meets it. `salt` tells the decisions of one ray apart
+//! from those of others ([`crate::sampling::ray_salt`]).
 
+use super::texture::texture_coordinates;
 use super::{Reference, gamma, tree};
+use crate::sampling::{coverage, uniform};
 use glam::DVec3;
 
 /// Where a ray meets a triangle.
@@ -23,9 +28,9 @@ impl Reference {
     /// The hit with the smallest `t` in `(0, t_max)`; of several at the same `t`, the first in the scene's order.
     ///
     /// `direction` need not have unit length. A ray that is not finite, or has no direction, hits nothing.
-    pub fn closest_hit(&self, origin: DVec3, direction: DVec3, t_max: f64) -> Option<Hit> {
+    pub fn closest_hit(&self, origin: DVec3, direction: DVec3, t_max: f64, salt: u32) -> Option<Hit> {
         let mut closest: Option<Hit> = None;
-        self.for_each_hit(origin, direction, t_max, &mut |hit| {
+        self.for_each_hit(origin, direction, t_max, salt, &mut |hit| {
             if closest.is_none_or(|c| (hit.t, hit.object, hit.triangle) < (c.t, c.object, c.triangle)) {
                 closest = Some(hit);
             }
@@ -35,9 +40,9 @@ impl Reference {
     }
 
     /// Whether anything is hit at a `t` in `(0, t_max)`.
-    pub fn occluded(&self, origin: DVec3, direction: DVec3, t_max: f64) -> bool {
+    pub fn occluded(&self, origin: DVec3, direction: DVec3, t_max: f64, salt: u32) -> bool {
         let mut occluded = false;
-        self.for_each_hit(origin, direction, t_max, &mut |_| {
+        self.for_each_hit(origin, direction, t_max, salt, &mut |_| {
             occluded = true;
             f64::NEG_INFINITY
         });
@@ -45,7 +50,7 @@ impl Reference {
     }
 
     /// Calls `found` for hits in `(0, t_max)`. It returns the `t` beyond which it does not care for more; some more may come.
-    fn for_each_hit(&self, origin: DVec3, direction: DVec3, t_max: f64, found: &mut impl FnMut(Hit) -> f64) {
+    fn for_each_hit(&self, origin: DVec3, direction: DVec3, t_max: f64, salt: u32, found: &mut impl FnMut(Hit) -> f64) {
         if !origin.is_finite() || !direction.is_finite() || direction == DVec3::ZERO {
             return;
         }
@@ -55,7 +60,10 @@ impl Reference {
             if let Some((t, barycentrics)) = ray.intersect(self.corners(object, triangle))
                 && t < t_max
             {
-                *limit = found(Hit { t, object, triangle, barycentrics });
+                let hit = Hit { t, object, triangle, barycentrics };
+                if self.is_met(&hit, salt) {
+                    *limit = found(hit);
+                }
             }
         };
         if let Some(trees) = &self.trees {
@@ -73,6 +81,19 @@ impl Reference {
                 }
             }
         }
+    }
+}
+
+impl Reference {
+    /// Whether a ray meets the surface at a hit, or passes through: a surface of opacity 0.3 stops three rays of ten.
+    fn is_met(&self, hit: &Hit, salt: u32) -> bool {
+        let object = &self.scene.objects[hit.object as usize];
+        let mesh = &self.scene.meshes[object.mesh as usize];
+        let triangle = &mesh.triangles[hit.triangle as usize];
+        let [b1, b2] = hit.barycentrics;
+        let uv = texture_coordinates(mesh, triangle, [1.0 - b1 - b2, b1, b2]);
+        let opacity = self.opacity(self.scene.material_of(object, triangle), uv);
+        opacity >= 1.0 || uniform(coverage(salt, hit.object, hit.triangle)) < opacity
     }
 }
 

@@ -1,18 +1,30 @@
-//! Direct light: next-event estimation.
+//! Direct light: next-event estimation (slides "Lighting Functions", "Shadows & Attenuation", "Area Luminaires").
 
+use super::Reference;
+use super::scatter::bsdf_pdf;
 use super::surfel::{Surfel, interpolate, offset_ray_origin, position_error};
-use super::{Reference, warp::uniform_triangle};
+use super::texture::texture_coordinates;
+use super::warp::{solid_angle, spherical_triangle, uniform_triangle};
 use crate::sampling::uniform;
-use crate::scene::{EmissiveTriangle, Luminaire, SampledLuminaire};
+use crate::scene::{AreaSampling, EmissiveTriangle, LightSampling, Luminaire, SampledLuminaire};
 use glam::DVec3;
 
 /// Where a shadow ray to a point on a surface ends, short of the point: a relative distance far above the error of `t`.
 const BEFORE_TARGET: f64 = 1.0 - 1e-9;
 
+/// A triangle is near where its area over the squared distance to its centroid is above this.
+const NEAR: f64 = 0.05;
+/// Triangles that look smaller, in steradian, are sampled by area: solid angles cancel.
+const LEAST_SOLID_ANGLE: f64 = 1e-3;
+
 /// Light that would arrive from a luminaire if nothing were between.
 struct Unoccluded {
-    /// Scattered radiance.
-    radiance: DVec3,
+    /// Unit direction to the luminaire.
+    wi: DVec3,
+    /// Irradiance on a surface perpendicular to `wi`, over the probability of this sample.
+    irradiance: DVec3,
+    /// Density of `wi`, per steradian, the choice of the luminaire included; none where no other ray can find the luminaire.
+    pdf: Option<f64>,
     /// The shadow ray.
     origin: DVec3,
     direction: DVec3,
@@ -21,85 +33,196 @@ struct Unoccluded {
 
 impl Reference {
     /// Radiance towards `wo` from one luminaire, chosen by number 0 of `random` in proportion to its power and weighted by
-    /// one over its probability; numbers 1 and 2 choose the point on it. Adds the shadow ray, if any, to `rays`.
-    pub fn direct_light(&self, surfel: &Surfel, wo: DVec3, random: [u32; 4], rays: &mut u32) -> DVec3 {
-        if self.luminaires.entries.is_empty() {
+    /// one over its probability; numbers 1 and 2 choose the point on it, with number 3 for an environment. `salt` is that of the
+    /// shadow ray; it is added, if there is one, to `rays`.
+    pub fn direct_light(&self, surfel: &Surfel, wo: DVec3, random: [u32; 4], salt: u32, rays: &mut u32) -> DVec3 {
+        if !surfel.scatters() {
             return DVec3::ZERO;
         }
-        let chosen = self.luminaires.choice.choose(random[0]);
-        let light = match &self.luminaires.entries[chosen] {
-            SampledLuminaire::Impulse(luminaire) => from_impulse(surfel, wo, luminaire),
-            SampledLuminaire::Environment => return DVec3::ZERO,
-            SampledLuminaire::Area(triangle) => {
-                let emission = self.scene.materials[triangle.material as usize].emission.as_dvec3();
-                from_triangle(surfel, wo, triangle, emission, uniform(random[1]), uniform(random[2]))
+        let Some(light) = self.sample_luminaire(surfel, random) else { return DVec3::ZERO };
+        let cosine = surfel.shading_normal.dot(light.wi).max(0.0);
+        let estimator = self.estimator();
+        let weight = match (light.pdf, estimator.light_sampling) {
+            (Some(pdf), LightSampling::Mis) => {
+                power_heuristic(pdf, bsdf_pdf(surfel, wo, light.wi, estimator.directions))
             }
+            _ => 1.0,
         };
-        if light.radiance == DVec3::ZERO {
+        let radiance = weight * surfel.bsdf(wo, light.wi) * cosine * light.irradiance;
+        if radiance == DVec3::ZERO {
             return DVec3::ZERO;
         }
         *rays += 1;
-        if self.occluded(light.origin, light.direction, light.t_max) {
+        if self.occluded(light.origin, light.direction, light.t_max, salt) {
             return DVec3::ZERO;
         }
-        light.radiance / self.luminaires.choice.pdf[chosen]
+        radiance
+    }
+
+    /// Chooses a luminaire and a point on it.
+    fn sample_luminaire(&self, surfel: &Surfel, random: [u32; 4]) -> Option<Unoccluded> {
+        if self.luminaires.entries.is_empty() {
+            return None;
+        }
+        let chosen = self.luminaires.choice.choose(random[0]);
+        let probability = self.luminaires.choice.pdf[chosen];
+        match &self.luminaires.entries[chosen] {
+            SampledLuminaire::Impulse(luminaire) => from_impulse(surfel, luminaire, probability),
+            SampledLuminaire::Area(triangle) => {
+                self.from_triangle(surfel, triangle, probability, uniform(random[1]), uniform(random[2]))
+            }
+            SampledLuminaire::Environment => {
+                let wi = self.sample_environment(random)?;
+                let pdf = probability * self.environment_density(wi);
+                let irradiance = self.environment_radiance(wi) / pdf;
+                let origin = surfel.offset_ray_origin(wi);
+                Some(Unoccluded { wi, irradiance, pdf: Some(pdf), origin, direction: wi, t_max: f64::INFINITY })
+            }
+        }
+    }
+
+    /// A point on an emissive triangle: radiance over the density of its direction.
+    fn from_triangle(
+        &self,
+        surfel: &Surfel,
+        triangle: &EmissiveTriangle,
+        probability: f64,
+        u: f64,
+        v: f64,
+    ) -> Option<Unoccluded> {
+        // It sees itself from the edge. Rounding would make that half of all directions.
+        if surfel.owner == [triangle.object, triangle.triangle] {
+            return None;
+        }
+        let [a, b, c] = triangle.vertices;
+        let normal = (b - a).cross(c - a).normalize_or_zero();
+        let weights = match self.near_solid_angle(surfel.position, triangle.vertices) {
+            Some(_) => {
+                let wi = spherical_triangle(seen_from(surfel.position, triangle.vertices), u, v);
+                weights_along(surfel.position, wi, triangle.vertices)
+            }
+            None => uniform_triangle(u, v),
+        };
+        let point = interpolate(weights, triangle.vertices);
+        let wi = (point - surfel.position).try_normalize()?;
+        let pdf = probability * self.triangle_density(surfel.position, triangle.vertices, point);
+        // Both ends are inexact.
+        let origin = surfel.offset_ray_origin(wi);
+        let target = offset_ray_origin(point, position_error(triangle.vertices), normal, -wi);
+        Some(Unoccluded {
+            wi,
+            irradiance: self.emission_at(triangle, weights) / pdf,
+            pdf: Some(pdf),
+            origin,
+            direction: target - origin,
+            t_max: BEFORE_TARGET,
+        })
+    }
+
+    /// Mean radiance that leaves a point of an emissive triangle: where there is a hole, nothing is emitted.
+    fn emission_at(&self, triangle: &EmissiveTriangle, weights: [f64; 3]) -> DVec3 {
+        let mesh = &self.scene.meshes[self.scene.objects[triangle.object as usize].mesh as usize];
+        let uv = texture_coordinates(mesh, &mesh.triangles[triangle.triangle as usize], weights);
+        let material = &self.scene.materials[triangle.material as usize];
+        let emission = material.emission.as_dvec3() * self.map(material.maps.emission, uv).truncate();
+        emission * self.opacity(material, uv)
+    }
+
+    /// The solid angle of a triangle that is sampled by its solid angle from here; none if it is sampled by its area.
+    fn near_solid_angle(&self, from: DVec3, corners: [DVec3; 3]) -> Option<f64> {
+        let [a, b, c] = corners;
+        let area = 0.5 * (b - a).cross(c - a).length();
+        let distance2 = ((a + b + c) / 3.0).distance_squared(from);
+        if self.estimator().area_sampling == AreaSampling::Area || area / distance2 <= NEAR {
+            return None;
+        }
+        Some(solid_angle(seen_from(from, corners))).filter(|omega| *omega > LEAST_SOLID_ANGLE)
+    }
+
+    /// The density with which light sampling at `from` chooses the direction to a point of an emissive triangle, once the triangle
+    /// is chosen; per steradian. Infinite for a triangle seen from the edge.
+    pub fn triangle_density(&self, from: DVec3, corners: [DVec3; 3], point: DVec3) -> f64 {
+        if let Some(omega) = self.near_solid_angle(from, corners) {
+            return 1.0 / omega;
+        }
+        let [a, b, c] = corners;
+        // Twice the area times the cosine at the luminaire.
+        let projected = (b - a).cross(c - a).dot((point - from).normalize_or_zero()).abs();
+        point.distance_squared(from) / (0.5 * projected)
+    }
+
+    /// The density with which light sampling at `from` chooses the direction to a point of an emissive surface; per steradian, the choice
+    /// of the luminaire included.
+    pub fn luminaire_pdf(&self, from: DVec3, surfel: &Surfel) -> f64 {
+        let [object, triangle] = surfel.owner;
+        let corners = self.corners(object, triangle);
+        let [a, b, c] = corners;
+        let area = 0.5 * (b - a).cross(c - a).length();
+        let object = &self.scene.objects[object as usize];
+        let mesh = &self.scene.meshes[object.mesh as usize];
+        let material = object.material.unwrap_or(mesh.triangles[triangle as usize].material);
+        let probability = self.luminaires.area_density(&self.scene, material) * area;
+        probability * self.triangle_density(from, corners, surfel.position)
+    }
+
+    /// The same for a direction to the environment.
+    pub fn environment_pdf(&self, direction: DVec3) -> f64 {
+        self.luminaires.environment_probability() * self.environment_density(direction)
     }
 }
 
 /// A luminaire without an area: inverse-square law, or no attenuation at infinity.
-fn from_impulse(surfel: &Surfel, wo: DVec3, luminaire: &Luminaire) -> Unoccluded {
+fn from_impulse(surfel: &Surfel, luminaire: &Luminaire, probability: f64) -> Option<Unoccluded> {
     match luminaire {
         Luminaire::Point { position, intensity } => {
             let position = position.as_dvec3();
             let to_light = position - surfel.position;
-            let wi = to_light.normalize_or_zero();
-            let irradiance = cosine(surfel, wi) * intensity.as_dvec3() / to_light.length_squared();
+            let wi = to_light.try_normalize()?;
+            let irradiance = intensity.as_dvec3() / to_light.length_squared() / probability;
             let origin = surfel.offset_ray_origin(wi);
-            Unoccluded {
-                radiance: reflect(surfel, wo, wi, irradiance),
-                origin,
-                direction: position - origin,
-                t_max: 1.0,
-            }
+            Some(Unoccluded { wi, irradiance, pdf: None, origin, direction: position - origin, t_max: 1.0 })
         }
         Luminaire::Infinite { direction, irradiance } => {
             let wi = -direction.as_dvec3();
-            let irradiance = cosine(surfel, wi) * irradiance.as_dvec3();
+            let irradiance = irradiance.as_dvec3() / probability;
             let origin = surfel.offset_ray_origin(wi);
-            Unoccluded { radiance: reflect(surfel, wo, wi, irradiance), origin, direction: wi, t_max: f64::INFINITY }
+            Some(Unoccluded { wi, irradiance, pdf: None, origin, direction: wi, t_max: f64::INFINITY })
         }
     }
 }
 
-/// A point on an emissive triangle, chosen evenly by area: `Le cos cos' area / d^2`.
-fn from_triangle(
-    surfel: &Surfel,
-    wo: DVec3,
-    triangle: &EmissiveTriangle,
-    emission: DVec3,
-    u: f64,
-    v: f64,
-) -> Unoccluded {
-    let [a, b, c] = triangle.vertices;
-    let point = interpolate(uniform_triangle(u, v), triangle.vertices);
-    let normal = (b - a).cross(c - a).normalize_or_zero();
-    let to_light = point - surfel.position;
-    let wi = to_light.normalize_or_zero();
-    let irradiance = cosine(surfel, wi) * normal.dot(wi).abs() * triangle.area() / to_light.length_squared() * emission;
-    // Both ends are inexact.
-    let origin = surfel.offset_ray_origin(wi);
-    let target = offset_ray_origin(point, position_error(triangle.vertices), normal, -wi);
-    let radiance = reflect(surfel, wo, wi, irradiance);
-    Unoccluded { radiance, origin, direction: target - origin, t_max: BEFORE_TARGET }
+/// Weight of emission that a ray finds: all of it if nothing else could have found it, that is if the ray comes from the camera or
+/// an impulse (`pdf` is none) or no light is sampled; none if light sampling has already counted it.
+///
+/// `pdf` is the density with which the ray's direction was chosen, `light_pdf` that with which light sampling would have.
+pub fn emission_weight(light_sampling: LightSampling, pdf: Option<f64>, light_pdf: f64) -> f64 {
+    match (pdf, light_sampling) {
+        (None, _) | (_, LightSampling::None) => 1.0,
+        (Some(_), LightSampling::Direct) => 0.0,
+        (Some(pdf), LightSampling::Mis) => power_heuristic(pdf, light_pdf),
+    }
 }
 
-/// Cosine of the angle of incidence; zero from behind.
-fn cosine(surfel: &Surfel, wi: DVec3) -> f64 {
-    surfel.shading_normal.dot(wi).max(0.0)
+/// Weight of a sample that was chosen with density `a` where another way to choose it has density `b`: `a^2 / (a^2 + b^2)` (Veach and
+/// Guibas, "Optimally Combining Sampling Techniques for Monte Carlo Rendering", 1995). `a` is not zero; either may be infinite.
+pub fn power_heuristic(a: f64, b: f64) -> f64 {
+    if a.is_infinite() {
+        return 1.0;
+    }
+    1.0 / (1.0 + (b / a).powi(2))
 }
 
-/// Radiance towards `wo` for `irradiance` from `wi`.
-fn reflect(surfel: &Surfel, wo: DVec3, wi: DVec3, irradiance: DVec3) -> DVec3 {
-    // Zero distance gives zero times infinity; such a point has no measure.
-    if wi == DVec3::ZERO { DVec3::ZERO } else { surfel.bsdf(wo, wi) * irradiance }
+/// Unit vectors to the corners.
+fn seen_from(from: DVec3, corners: [DVec3; 3]) -> [DVec3; 3] {
+    corners.map(|corner| (corner - from).normalize_or_zero())
+}
+
+/// Weights of a triangle's corners where a ray, which is known to hit it, does (Cramer's rule: Moeller and Trumbore, "Fast, Minimum Storage
+/// Ray/Triangle Intersection", 1997). A point made from them is on the plane as well as any other of the triangle.
+fn weights_along(origin: DVec3, direction: DVec3, [a, b, c]: [DVec3; 3]) -> [f64; 3] {
+    let (ab, ac, to_origin) = (b - a, c - a, origin - a);
+    let determinant = direction.cross(ac).dot(ab);
+    let b1 = (to_origin.dot(direction.cross(ac)) / determinant).clamp(0.0, 1.0);
+    let b2 = (direction.dot(to_origin.cross(ab)) / determinant).clamp(0.0, 1.0 - b1);
+    [1.0 - b1 - b2, b1, b2]
 }

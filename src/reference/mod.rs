@@ -5,19 +5,23 @@
 //!
 //! | lecture | here |
 //! |---|---|
-//! | Surface Element Class | [`surfel`]: `Surfel`, `bsdf` |
-//! | Shadows & Attenuation, Area Luminaires | [`luminaire`]: `direct_light` |
-//! | More Efficient Integration, Extinction | [`scatter`]: `scatter`, `survival`; [`warp`] |
+//! | Surface Element Class | [`surfel`]: `Surfel`, `bsdf`; [`texture`]: `bilinear` |
+//! | Lighting Functions, Shadows & Attenuation, Area Luminaires | [`luminaire`]: `direct_light`; [`environment`] |
+//! | Inefficient Integration, More Efficient Integration, Extinction | [`scatter`]: `scatter`, `bsdf_pdf`, `survival`; [`warp`] |
+//! | Impulse Reflection, Adding Transmission | [`impulse`]: `fresnel`, `refract`, `impulses` |
 //! | Intersection Problems | [`intersect`], [`surfel`]: `offset_ray_origin` |
 //! | Sensor Modelling | [`sensor`]: `sensor_ray` |
-//! | Path Trace Function, A Simple Raytracer | [`path`]: `radiance` |
+//! | Path Trace Function, A Simple Raytracer, Albedo Termination | [`path`]: `radiance` |
 
+pub mod environment;
+pub mod impulse;
 pub mod intersect;
 pub mod luminaire;
 pub mod path;
 pub mod scatter;
 pub mod sensor;
 pub mod surfel;
+pub mod texture;
 mod tree;
 pub mod warp;
 

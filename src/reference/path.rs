@@ -1,58 +1,111 @@
 //! The radiance along a camera ray: the lecture's path tracer, its recursion turned into a loop with a throughput.
 
 use super::Reference;
-use super::scatter::{scatter, survival};
-use crate::sampling::{light_block, random4, scatter_block, uniform};
-use crate::scene::Integrator;
+use super::luminaire::emission_weight;
+use super::scatter::{MAX_SURVIVAL, scatter, survival};
+use crate::sampling::{light_block, ray_salt, scatter_block, uniform};
+use crate::scene::{AreaSampling, Estimator, Extinction, Integrator, LightSampling};
 use glam::DVec3;
 
 impl Reference {
+    /// The estimator. The simple ray tracer samples direct light, and area luminaires by their area.
+    pub(super) fn estimator(&self) -> Estimator {
+        match self.scene.integrator {
+            Integrator::Path(estimator) => estimator,
+            Integrator::Simple { .. } => Estimator {
+                light_sampling: LightSampling::Direct,
+                area_sampling: AreaSampling::Area,
+                ..Estimator::default()
+            },
+        }
+    }
+
     /// Radiance of one sample of a pixel (`y * width + x`), and the number of rays that were traced for it.
     pub fn radiance(&self, pixel: u32, sample: u32) -> (DVec3, u32) {
-        let seed = self.scene.settings.seed;
+        let settings = &self.scene.settings;
+        let numbers = |block: u32| settings.sampler.numbers(pixel, sample, block, settings.seed);
+        let salt = |ray: u32| ray_salt(pixel, sample, ray, settings.seed);
+        let estimator = self.estimator();
+
         let (mut origin, mut direction) = self.sensor_ray(pixel, sample);
         let mut radiance = DVec3::ZERO;
+        // Share of the light along the ray that reaches the camera, over the probability of the path.
         let mut throughput = DVec3::ONE;
+        // Product of eta^2 over all transmissions: what extinction must not see.
+        let mut eta_scale = 1.0;
+        // Throughput without eta^2 and without extinction: the slides' `combinedAlbedo`.
+        let mut combined_albedo = DVec3::ONE;
+        // Where the ray comes from, and the density of its direction; none for the camera and impulses.
+        let mut from = DVec3::ZERO;
+        let mut pdf = None;
         let mut rays = 0;
         for bounce in 0.. {
             rays += 1;
-            let Some(hit) = self.closest_hit(origin, direction, f64::INFINITY) else {
-                break; // Escaping light disappears.
+            let Some(hit) = self.closest_hit(origin, direction, f64::INFINITY, salt(2 * bounce)) else {
+                let weight = emission_weight(estimator.light_sampling, pdf, self.environment_pdf(direction));
+                radiance += throughput * weight * self.environment_radiance(direction);
+                break;
             };
             let wo = -direction;
             let surfel = self.surfel(&hit, wo);
-
-            // Emission that an indirect ray finds is already in the direct light of the bounce before.
-            if bounce == 0 {
-                radiance += surfel.emission;
+            if surfel.emission != DVec3::ZERO {
+                let weight = emission_weight(estimator.light_sampling, pdf, self.luminaire_pdf(from, &surfel));
+                radiance += throughput * weight * surfel.emission;
             }
-            let random = random4(pixel, sample, light_block(bounce), seed);
-            radiance += throughput * self.direct_light(&surfel, wo, random, &mut rays);
-
-            match self.scene.integrator {
-                Integrator::Simple { ambient } => {
-                    radiance += ambient.as_dvec3() * surfel.ambient;
-                    break;
-                }
-                Integrator::Path(e) if Some(bounce) == e.max_bounces => break,
-                Integrator::Path(_) => {}
-            }
-
-            // Extinction: the survivors stand for those that ended.
-            let survival = survival(&surfel);
-            if uniform(random[3]) >= survival {
+            if estimator.max_bounces.is_some_and(|max| bounce > max) {
                 break;
             }
-            throughput /= survival;
+            if estimator.light_sampling != LightSampling::None {
+                let shadow = salt(2 * bounce + 1);
+                radiance +=
+                    throughput * self.direct_light(&surfel, wo, numbers(light_block(bounce)), shadow, &mut rays);
+            }
+            if let Integrator::Simple { ambient } = self.scene.integrator {
+                radiance += ambient.as_dvec3() * surfel.ambient;
+                break;
+            }
 
-            let random = random4(pixel, sample, scatter_block(bounce), seed);
-            let (wi, weight) = scatter(&surfel, wo, uniform(random[0]), uniform(random[1]));
-            throughput *= weight;
+            // Extinction by the surface. The survivors stand for those that ended, unless the slide is taken at its word.
+            let random = numbers(scatter_block(bounce)).map(uniform);
+            if matches!(estimator.extinction, Extinction::Literal | Extinction::Surface) {
+                let alive = survival(&surfel);
+                if random[3] >= alive {
+                    break;
+                }
+                if estimator.extinction == Extinction::Surface {
+                    throughput /= alive;
+                }
+            }
+
+            let scattered = scatter(&surfel, wo, estimator.directions, [random[0], random[1], random[2]]);
+            // What the last bounce finds is direct light; light sampling has it already, but for what an impulse shows.
+            let last = estimator.max_bounces == Some(bounce);
+            if last && estimator.light_sampling == LightSampling::Direct && scattered.pdf.is_some() {
+                break;
+            }
+            throughput *= scattered.weight;
             if throughput == DVec3::ZERO {
                 break;
             }
-            origin = surfel.offset_ray_origin(wi);
-            direction = wi;
+            eta_scale *= scattered.eta2;
+
+            // Slide "Albedo Termination": a bias.
+            combined_albedo *= scattered.weight * scattered.eta2;
+            if estimator.albedo_threshold.is_some_and(|least| combined_albedo.max_element() < f64::from(least)) {
+                break;
+            }
+            // Russian roulette by what is left of the whole path.
+            if estimator.extinction == Extinction::Throughput {
+                let alive = (throughput * eta_scale).max_element().min(MAX_SURVIVAL);
+                if random[3] >= alive {
+                    break;
+                }
+                throughput /= alive;
+            }
+            from = surfel.position;
+            pdf = scattered.pdf;
+            origin = surfel.offset_ray_origin(scattered.wi);
+            direction = scattered.wi;
         }
         (radiance, rays)
     }

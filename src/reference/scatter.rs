@@ -1,20 +1,97 @@
 //! Indirect light: which way a path goes on, and whether it does.
+//!
+//! Three numbers decide. The third, as the slide "Impulse Reflection" has it, is first compared with the probability of an
+//! impulse; what is left of it tells reflection from transmission, or one lobe from the other. The first two choose a
+//! direction in the lobe.
 
-use super::surfel::Surfel;
-use super::warp::cosine_hemisphere;
+use super::impulse::reflect;
+use super::surfel::{Surfel, mean};
+use super::warp::{cosine_hemisphere, glossy_half_vector, uniform_hemisphere};
+use crate::scene::Directions;
 use glam::DVec3;
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 /// No surface lets every path live, so that every path ends.
-const MAX_SURVIVAL: f64 = 0.9999;
+pub const MAX_SURVIVAL: f64 = 0.9999;
 
-/// The probability that a path goes on: one minus the extinction coefficient, for the channel that loses least.
+/// The probability that a path goes on: one minus the extinction coefficient (slide "Extinction Coefficient"), for the channel
+/// that loses least. Fresnel aside, so that it is the same for all directions.
 pub fn survival(surfel: &Surfel) -> f64 {
-    (surfel.lambert + surfel.glossy).max_element().min(MAX_SURVIVAL)
+    let impulse = surfel.reflection.max(surfel.transmission);
+    (surfel.lambert + surfel.glossy + impulse).max_element().min(MAX_SURVIVAL)
 }
 
-/// A direction with density `cos / pi` about the shading normal, and its weight `f cos / pdf = pi f`.
-pub fn scatter(surfel: &Surfel, wo: DVec3, u: f64, v: f64) -> (DVec3, DVec3) {
-    let wi = cosine_hemisphere(surfel.shading_normal, u, v);
-    (wi, PI * surfel.bsdf(wo, wi))
+/// How a path goes on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scattered {
+    /// Unit direction from which the light comes.
+    pub wi: DVec3,
+    /// Factor to the light from there: `f |cos| / pdf`; for an impulse its albedo over its probability. Zero ends the path.
+    pub weight: DVec3,
+    /// Density of `wi`, per steradian; none for an impulse.
+    pub pdf: Option<f64>,
+    /// `eta^2` where light was transmitted, else 1: by this, `weight` is smaller than the share of energy.
+    pub eta2: f64,
+}
+
+/// Chooses how a path that arrived from `wo` goes on, by three numbers in [0, 1).
+pub fn scatter(surfel: &Surfel, wo: DVec3, directions: Directions, [u, v, lobe]: [f64; 3]) -> Scattered {
+    let impulses = surfel.impulses(wo);
+    let p = surfel.impulse_probability(&impulses);
+    if lobe < p {
+        let (reflection, transmission) = (mean(impulses.reflection), mean(impulses.transmission));
+        let q = reflection / (reflection + transmission);
+        return if lobe / p < q {
+            let weight = impulses.reflection / (p * q);
+            Scattered { wi: impulses.reflected, weight, pdf: None, eta2: 1.0 }
+        } else {
+            // Light that enters a denser medium is concentrated into a smaller solid angle, and spread out again on its way
+            // back: radiance over the squared index is what is kept (Veach 1997, section 5.2).
+            let eta2 = impulses.eta * impulses.eta;
+            let weight = impulses.transmission / (p * (1.0 - q)) / eta2;
+            Scattered { wi: impulses.transmitted, weight, pdf: None, eta2 }
+        };
+    }
+
+    let lobe = (lobe - p) / (1.0 - p);
+    let n = surfel.shading_normal;
+    let wi = match directions {
+        Directions::Uniform => uniform_hemisphere(n, u, v),
+        Directions::Bsdf if lobe < glossy_share(surfel) => reflect(wo, glossy_half_vector(n, surfel.exponent, u, v)),
+        Directions::Cosine | Directions::Bsdf => cosine_hemisphere(n, u, v),
+    };
+    let pdf = bsdf_pdf(surfel, wo, wi, directions);
+    let weight = if pdf > 0.0 { surfel.bsdf(wo, wi) * n.dot(wi) / pdf } else { DVec3::ZERO };
+    Scattered { wi, weight, pdf: Some(pdf), eta2: 1.0 }
+}
+
+/// The density with which [`scatter`] chooses `wi`, per steradian, out of all there is to choose from: impulses take their
+/// share. Zero where nothing is scattered to, though the glossy lobe chooses such directions too.
+pub fn bsdf_pdf(surfel: &Surfel, wo: DVec3, wi: DVec3, directions: Directions) -> f64 {
+    if !surfel.is_above(wi) || !surfel.scatters() {
+        return 0.0;
+    }
+    let n = surfel.shading_normal;
+    let cosine = n.dot(wi) / PI;
+    let pdf = match directions {
+        Directions::Uniform => 1.0 / TAU,
+        Directions::Cosine => cosine,
+        Directions::Bsdf => {
+            let g = glossy_share(surfel);
+            g * glossy_pdf(n, surfel.exponent, wo, wi) + (1.0 - g) * cosine
+        }
+    };
+    (1.0 - surfel.impulse_probability(&surfel.impulses(wo))) * pdf
+}
+
+/// Density of the direction `wi` in which [`glossy_half_vector`] reflects `wo`, per steradian.
+pub fn glossy_pdf(n: DVec3, m: f64, wo: DVec3, wi: DVec3) -> f64 {
+    let h = (wo + wi).normalize_or_zero();
+    let half_vector = (m + 1.0) / TAU * n.dot(h).max(0.0).powf(m);
+    half_vector / (4.0 * wo.dot(h).abs())
+}
+
+/// The probability of the glossy lobe among the two: its share of the albedo.
+fn glossy_share(surfel: &Surfel) -> f64 {
+    mean(surfel.glossy) / mean(surfel.lambert + surfel.glossy)
 }

@@ -1,13 +1,16 @@
 //! The surface element: everything that shading needs to know about a point on a surface.
 
 use super::intersect::Hit;
+use super::texture::texture_coordinates;
 use super::{Reference, gamma};
-use glam::{DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 use std::f64::consts::PI;
 
-/// A surface element, seen from the direction `wo`.
+/// A surface element, seen from the direction `wo` (slide "Surface Element Class"); textures are already in its numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Surfel {
+    /// The surface it is a part of: indices of the object, and of the triangle in its mesh.
+    pub owner: [u32; 2],
     /// World position.
     pub position: DVec3,
     /// How far `position` may be from the triangle's plane through rounding, along each axis.
@@ -16,6 +19,10 @@ pub struct Surfel {
     pub geometric_normal: DVec3,
     /// Unit normal interpolated from the vertices where there are any, on the side of `geometric_normal` and of `wo`.
     pub shading_normal: DVec3,
+    /// Texture coordinates; 0 where there are none.
+    pub uv: DVec2,
+    /// Whether `wo` is on the outward side.
+    pub front: bool,
     /// Emitted radiance.
     pub emission: DVec3,
     /// Albedo for the ambient term.
@@ -26,6 +33,14 @@ pub struct Surfel {
     pub glossy: DVec3,
     /// Blinn-Phong exponent.
     pub exponent: f64,
+    /// Albedo of the impulse reflection, Fresnel aside.
+    pub reflection: DVec3,
+    /// Albedo of the impulse transmission, Fresnel aside.
+    pub transmission: DVec3,
+    /// Index of refraction inside over that outside; none: a mirror without Fresnel.
+    pub eta: Option<f64>,
+    /// Probability of going on by an impulse, if the material states one.
+    pub impulse_probability: Option<f64>,
 }
 
 impl Reference {
@@ -42,29 +57,46 @@ impl Reference {
         let object = &self.scene.objects[hit.object as usize];
         let mesh = &self.scene.meshes[object.mesh as usize];
         let triangle = &mesh.triangles[hit.triangle as usize];
+        let normal_to_world = self.instances[hit.object as usize].normal_to_world;
+        // Counter-clockwise in object space is outside, and stays outside in an instance that mirrors.
+        let [a, b, c] = triangle.vertices.map(|v| mesh.positions[v as usize].as_dvec3());
+        let mut front = (normal_to_world * (b - a).cross(c - a)).dot(geometric_normal) >= 0.0;
         let mut shading_normal = geometric_normal;
         if !mesh.normals.is_empty() {
             let normals = triangle.vertices.map(|v| mesh.normals[v as usize]);
             if normals.iter().all(|n| *n != Vec3::ZERO) {
-                let n = interpolate(weights, normals.map(|n| n.as_dvec3()));
-                let n = self.instances[hit.object as usize].normal_to_world * n;
-                let n = facing(n.normalize_or_zero(), geometric_normal);
+                let outward = normal_to_world * interpolate(weights, normals.map(|n| n.as_dvec3()));
+                // Vertex normals know better than the winding which side is outside.
+                let side = outward.dot(geometric_normal);
+                if side != 0.0 {
+                    front = side > 0.0;
+                }
+                let n = facing(outward.normalize_or_zero(), geometric_normal);
                 if n.dot(wo) > 0.0 {
                     shading_normal = n;
                 }
             }
         }
         let material = self.scene.material_of(object, triangle);
+        let uv = texture_coordinates(mesh, triangle, weights);
+        let map = |map: Option<u32>| self.map(map, uv).truncate();
         Surfel {
+            owner: [hit.object, hit.triangle],
             position,
             position_error: position_error(corners),
             geometric_normal,
             shading_normal,
-            emission: material.emission.as_dvec3(),
-            ambient: material.ambient.as_dvec3(),
-            lambert: material.lambert.as_dvec3(),
-            glossy: material.glossy.as_dvec3(),
+            uv,
+            front,
+            emission: material.emission.as_dvec3() * map(material.maps.emission),
+            ambient: material.ambient.as_dvec3() * map(material.maps.ambient),
+            lambert: material.lambert.as_dvec3() * map(material.maps.lambert),
+            glossy: material.glossy.as_dvec3() * map(material.maps.glossy),
             exponent: material.exponent.into(),
+            reflection: material.reflection.as_dvec3(),
+            transmission: material.transmission.as_dvec3(),
+            eta: material.eta.map(f64::from),
+            impulse_probability: material.impulse_probability.map(f64::from),
         }
     }
 }
@@ -74,7 +106,7 @@ impl Surfel {
     ///
     /// Zero unless `wi` is above the triangle *and* above the shading normal's plane: light would leak through walls.
     pub fn bsdf(&self, wo: DVec3, wi: DVec3) -> DVec3 {
-        if self.geometric_normal.dot(wi) <= 0.0 || self.shading_normal.dot(wi) <= 0.0 {
+        if !self.is_above(wi) {
             return DVec3::ZERO;
         }
         let mut f = self.lambert / PI;
@@ -84,6 +116,16 @@ impl Surfel {
             f += self.glossy * (glossy_normalization(self.exponent) * lobe);
         }
         f
+    }
+
+    /// Whether a direction is on the side of `wo`, of the triangle and of the shading normal's plane.
+    pub fn is_above(&self, wi: DVec3) -> bool {
+        self.geometric_normal.dot(wi) > 0.0 && self.shading_normal.dot(wi) > 0.0
+    }
+
+    /// Whether light is scattered in other ways than by impulses, so that light sampling makes sense.
+    pub fn scatters(&self) -> bool {
+        self.lambert != DVec3::ZERO || self.glossy != DVec3::ZERO
     }
 
     /// Where a ray that leaves in `direction` starts: far enough from the triangle's plane not to hit it again.
@@ -126,4 +168,9 @@ fn facing(v: DVec3, side: DVec3) -> DVec3 {
 /// The sum of `values`, weighted.
 pub(super) fn interpolate(weights: [f64; 3], values: [DVec3; 3]) -> DVec3 {
     weights[0] * values[0] + weights[1] * values[1] + weights[2] * values[2]
+}
+
+/// The average of the channels.
+pub(super) fn mean(colour: DVec3) -> f64 {
+    colour.element_sum() / 3.0
 }

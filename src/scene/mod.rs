@@ -327,6 +327,18 @@ impl Default for Material {
     }
 }
 
+impl Material {
+    /// Whether anything is mirrored or refracted.
+    pub fn has_impulse(&self) -> bool {
+        self.reflection != Vec3::ZERO || (self.transmission != Vec3::ZERO && self.eta.is_some())
+    }
+
+    /// Whether a ray may pass the surface as if it were not there.
+    pub fn has_holes(&self) -> bool {
+        self.opacity < 1.0 || self.maps.opacity.is_some()
+    }
+}
+
 impl Texture {
     /// The mean of the colours, unweighted by alpha.
     pub fn mean(&self) -> glam::DVec3 {

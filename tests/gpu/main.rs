@@ -7,6 +7,7 @@
 mod common;
 
 mod fallback;
+mod features;
 mod functions;
 mod intersection;
 mod pictures;

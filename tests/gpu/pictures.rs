@@ -7,10 +7,10 @@ use glam::{Affine3A, DVec3, Vec3};
 use luminaire::film::{Batch, Tile};
 use luminaire::reference::Reference;
 use luminaire::render::Tracer;
-use luminaire::scene::{Integrator, Luminaire, Material, Scene};
+use luminaire::scene::{Integrator, Luminaire, Material, Projection, Scene};
 
 /// Mean of every pixel over samples 0 to `samples`.
-fn pixels(tracer: &mut dyn Tracer, scene: &Scene, samples: u32) -> Vec<DVec3> {
+pub fn pixels(tracer: &mut dyn Tracer, scene: &Scene, samples: u32) -> Vec<DVec3> {
     let tile = Tile { x: 0, y: 0, width: scene.film.width, height: scene.film.height };
     let traced = tracer.trace(&Batch { tile, samples: 0..samples, group: samples }).expect("the tracer works");
     assert_eq!(traced.non_finite, 0);
@@ -18,7 +18,7 @@ fn pixels(tracer: &mut dyn Tracer, scene: &Scene, samples: u32) -> Vec<DVec3> {
 }
 
 /// How many pixels of two pictures differ by more than `tolerance` of the brighter one (or of a hundredth of the mean).
-fn differing(a: &[DVec3], b: &[DVec3], tolerance: f64) -> usize {
+pub fn differing(a: &[DVec3], b: &[DVec3], tolerance: f64) -> usize {
     let floor = a.iter().map(|p| p.element_sum() / 3.0).sum::<f64>() / a.len() as f64 * 0.01;
     a.iter()
         .zip(b)
@@ -26,7 +26,7 @@ fn differing(a: &[DVec3], b: &[DVec3], tolerance: f64) -> usize {
         .count()
 }
 
-fn mean(pixels: &[DVec3]) -> DVec3 {
+pub fn mean(pixels: &[DVec3]) -> DVec3 {
     pixels.iter().sum::<DVec3>() / pixels.len() as f64
 }
 
@@ -59,8 +59,8 @@ fn scenes() -> Vec<(&'static str, Scene)> {
 #[test]
 fn one_bounce_equals_the_reference_pixel_by_pixel() {
     for (name, mut scene) in scenes() {
-        if let Integrator::Path { max_bounces } = &mut scene.integrator {
-            *max_bounces = Some(1);
+        if let Integrator::Path(estimator) = &mut scene.integrator {
+            estimator.max_bounces = Some(1);
         }
         let expected = pixels(&mut Reference::new(&scene), &scene, 8);
         on_every_backend(|backend| {
@@ -147,7 +147,7 @@ fn point_luminaire_in_a_sphere() {
 #[test]
 fn light_does_not_leak_through_a_wall() {
     let mut scene = empty(8, 8);
-    scene.sensor.fov = 10.0;
+    scene.sensor.projection = Projection::Perspective { fov: 10.0 };
     let mut wall = quad(Vec3::new(-1.0, -1.0, -2.0), Vec3::X * 2.0, Vec3::Y * 2.0);
     wall.normals = vec![Vec3::new(0.0, 0.9, 0.43589).normalize(); 4];
     add(&mut scene, wall, matte(Vec3::splat(0.5)), Affine3A::IDENTITY);
@@ -172,7 +172,7 @@ fn light_does_not_leak_through_a_wall() {
 fn narrow_lamps_do_not_shadow_themselves() {
     for width in [1e-2f32, 1e-3, 1e-4] {
         let mut scene = empty(32, 32);
-        scene.integrator = Integrator::Path { max_bounces: Some(0) };
+        estimator(&mut scene).max_bounces = Some(0);
         scene.sensor.position = Vec3::new(0.0, 2.0, 3.0);
         scene.sensor.target = Vec3::ZERO;
         let floor = quad(Vec3::new(-2.0, 0.0, -2.0), Vec3::Z * 4.0, Vec3::X * 4.0);
@@ -214,8 +214,7 @@ fn irradiance_of_a_triangle_lamp() {
         / std::f64::consts::PI;
     let mut scene = empty(16, 16);
     // All pixels look at the origin: the field of view is a speck.
-    scene.sensor =
-        luminaire::scene::Sensor { position: Vec3::new(0.0, 0.5, -0.25), target: Vec3::ZERO, up: Vec3::Z, fov: 1e-3 };
+    scene.sensor = pinhole(Vec3::new(0.0, 0.5, -0.25), Vec3::ZERO, Vec3::Z, 1e-3);
     let floor = quad(Vec3::new(-10.0, 0.0, -10.0), Vec3::X * 20.0, Vec3::Z * 20.0);
     add(&mut scene, floor, matte(Vec3::splat(0.5)), Affine3A::IDENTITY);
     add(&mut scene, mesh(corners.to_vec(), &[[0, 1, 2]]), lamp(Vec3::ONE), Affine3A::IDENTITY);
@@ -229,8 +228,7 @@ fn irradiance_of_a_triangle_lamp() {
 #[test]
 fn inverse_square_and_none_at_infinity() {
     let mut scene = empty(1, 1);
-    scene.sensor =
-        luminaire::scene::Sensor { position: Vec3::new(0.0, 0.5, -0.25), target: Vec3::ZERO, up: Vec3::Z, fov: 1e-3 };
+    scene.sensor = pinhole(Vec3::new(0.0, 0.5, -0.25), Vec3::ZERO, Vec3::Z, 1e-3);
     let floor = quad(Vec3::new(-10.0, 0.0, -10.0), Vec3::X * 20.0, Vec3::Z * 20.0);
     add(&mut scene, floor, matte(Vec3::splat(0.5)), Affine3A::IDENTITY);
     let diffuse = 0.5 / std::f64::consts::PI;

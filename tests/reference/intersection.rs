@@ -84,15 +84,17 @@ fn trees_and_brute_force_agree() {
         }
         let origin = to - direction * distance;
         direction *= 10f64.powi(rng.random_range(-3..3));
-        let (a, b) =
-            (brute.closest_hit(origin, direction, f64::INFINITY), fast.closest_hit(origin, direction, f64::INFINITY));
+        let (a, b) = (
+            brute.closest_hit(origin, direction, f64::INFINITY, 0),
+            fast.closest_hit(origin, direction, f64::INFINITY, 0),
+        );
         assert_eq!(a, b, "ray {i} from {origin} along {direction}");
         hits += u32::from(a.is_some());
         for t_max in [0.5, 1.0, 2.0].map(|f| f * a.map_or(1.0, |hit| hit.t)) {
-            let expected = brute.closest_hit(origin, direction, t_max);
-            assert_eq!(fast.closest_hit(origin, direction, t_max), expected);
-            assert_eq!(fast.occluded(origin, direction, t_max), expected.is_some());
-            assert_eq!(brute.occluded(origin, direction, t_max), expected.is_some());
+            let expected = brute.closest_hit(origin, direction, t_max, 0);
+            assert_eq!(fast.closest_hit(origin, direction, t_max, 0), expected);
+            assert_eq!(fast.occluded(origin, direction, t_max, 0), expected.is_some());
+            assert_eq!(brute.occluded(origin, direction, t_max, 0), expected.is_some());
         }
     }
     assert!(hits > 6_000, "only {hits} hits: the test tests little");
@@ -109,7 +111,7 @@ fn closed_meshes_do_not_leak() {
         for i in 0..5_000 {
             let origin = widened(&map).transform_point3(in_cube(&mut rng) * 0.5);
             let to = target(&scene, &mut rng);
-            let hit = fast.closest_hit(origin, to - origin, f64::INFINITY);
+            let hit = fast.closest_hit(origin, to - origin, f64::INFINITY, 0);
             let hit = hit.unwrap_or_else(|| panic!("ray {i} from {origin} to {to} leaks"));
             // Convex: nothing is nearer than the target. Coordinates of 1e6 are good to 1e-10 in a mesh of size 1.
             assert!((hit.t - 1.0).abs() < 1e-8, "ray {i}: t = {}", hit.t);
@@ -136,7 +138,7 @@ fn hits_lie_on_the_ray_and_on_the_surface() {
             let root = (b * b - a * c).sqrt();
             [(-b - root) / a, (-b + root) / a].into_iter().find(|t| *t > 0.0)
         };
-        let hit = tracer.closest_hit(origin, direction, f64::INFINITY);
+        let hit = tracer.closest_hit(origin, direction, f64::INFINITY, 0);
         match (nearest(1.0 - 2e-3), nearest(1.0 + 1e-7), hit) {
             (Some(inner), Some(outer), hit) => {
                 let hit = hit.expect("a ray into the inner sphere hits");
@@ -169,20 +171,23 @@ fn the_interval_is_open() {
     );
     for tracer in [Reference::new(&scene), Reference::brute_force(&scene)] {
         let origin = DVec3::new(0.25, 0.5, 0.0);
-        let hit = tracer.closest_hit(origin, DVec3::new(0.0, 0.0, -2.0), f64::INFINITY).expect("a hit");
+        let hit = tracer.closest_hit(origin, DVec3::new(0.0, 0.0, -2.0), f64::INFINITY, 0).expect("a hit");
         assert_eq!(hit.t, 2.0);
-        assert!(tracer.closest_hit(origin, -DVec3::Z, 4.0).is_none());
-        assert!(tracer.closest_hit(origin, -DVec3::Z, 4.0f64.next_up()).is_some());
-        assert!(!tracer.occluded(origin, -DVec3::Z, 4.0));
-        assert!(tracer.occluded(origin, -DVec3::Z, 4.0f64.next_up()));
-        assert!(!tracer.occluded(origin, DVec3::Z, f64::INFINITY));
-        assert!(!tracer.occluded(origin - 4.0 * DVec3::Z, -DVec3::Z, f64::INFINITY), "a ray that starts on a surface");
-        assert!(tracer.occluded(origin, -DVec3::Z * 1e-300, f64::INFINITY));
+        assert!(tracer.closest_hit(origin, -DVec3::Z, 4.0, 0).is_none());
+        assert!(tracer.closest_hit(origin, -DVec3::Z, 4.0f64.next_up(), 0).is_some());
+        assert!(!tracer.occluded(origin, -DVec3::Z, 4.0, 0));
+        assert!(tracer.occluded(origin, -DVec3::Z, 4.0f64.next_up(), 0));
+        assert!(!tracer.occluded(origin, DVec3::Z, f64::INFINITY, 0));
+        assert!(
+            !tracer.occluded(origin - 4.0 * DVec3::Z, -DVec3::Z, f64::INFINITY, 0),
+            "a ray that starts on a surface"
+        );
+        assert!(tracer.occluded(origin, -DVec3::Z * 1e-300, f64::INFINITY, 0));
         for bad in [DVec3::ZERO, DVec3::NAN, DVec3::new(0.0, f64::NAN, -1.0), DVec3::NEG_INFINITY] {
-            assert!(tracer.closest_hit(origin, bad, f64::INFINITY).is_none());
-            assert!(!tracer.occluded(origin, bad, f64::INFINITY));
+            assert!(tracer.closest_hit(origin, bad, f64::INFINITY, 0).is_none());
+            assert!(!tracer.occluded(origin, bad, f64::INFINITY, 0));
         }
-        assert!(tracer.closest_hit(DVec3::NAN, -DVec3::Z, f64::INFINITY).is_none());
+        assert!(tracer.closest_hit(DVec3::NAN, -DVec3::Z, f64::INFINITY, 0).is_none());
     }
 }
 
@@ -203,7 +208,7 @@ fn extreme_meshes() {
             for i in 0..n {
                 let size = f64::from(scale);
                 let origin = DVec3::new(f64::from(i) + 0.25, 0.25, 1.0) * size;
-                let hit = tracer.closest_hit(origin, -DVec3::Z, f64::INFINITY).expect("a hit");
+                let hit = tracer.closest_hit(origin, -DVec3::Z, f64::INFINITY, 0).expect("a hit");
                 assert_eq!(hit.triangle, i, "scale {scale}, {n} triangles");
                 assert!((hit.t / size - 1.0).abs() < 1e-15, "scale {scale}: t = {}", hit.t);
             }

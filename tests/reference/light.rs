@@ -6,7 +6,7 @@ use glam::{Affine3A, DVec3, Mat3, Vec3};
 use luminaire::reference::Reference;
 use luminaire::reference::surfel::Surfel;
 use luminaire::sampling::{random4, uniform};
-use luminaire::scene::{Luminaire, Mesh, Scene};
+use luminaire::scene::{Estimator, Integrator, Luminaire, Mesh, Scene};
 use std::f64::consts::PI;
 
 const ALBEDO: f64 = 0.5;
@@ -14,6 +14,7 @@ const ALBEDO: f64 = 0.5;
 /// A floor at y = 0 that reflects half of the light.
 fn floor() -> Scene {
     let mut scene = empty(1, 1);
+    scene.integrator = Integrator::Path(Estimator::preset("cosine").expect("a preset"));
     let floor = quad(Vec3::new(-8.0, 0.0, -8.0), Vec3::X * 16.0, Vec3::Z * 16.0);
     add(&mut scene, floor, matte(Vec3::splat(ALBEDO as f32)), Affine3A::IDENTITY);
     scene
@@ -21,7 +22,7 @@ fn floor() -> Scene {
 
 /// The floor's surfel under `(x, z)`, seen from above.
 fn surfel_at(tracer: &Reference, x: f64, z: f64) -> Surfel {
-    let hit = tracer.closest_hit(DVec3::new(x, 1e-3, z), -DVec3::Y, f64::INFINITY).expect("the floor");
+    let hit = tracer.closest_hit(DVec3::new(x, 1e-3, z), -DVec3::Y, f64::INFINITY, 0).expect("the floor");
     tracer.surfel(&hit, DVec3::Y)
 }
 
@@ -30,7 +31,7 @@ fn irradiance(tracer: &Reference, x: f64, z: f64, samples: u32) -> Estimate {
     let surfel = surfel_at(tracer, x, z);
     Estimate::new((0..samples).map(|i| {
         let mut rays = 0;
-        tracer.direct_light(&surfel, DVec3::Y, random4(0, i, 1, 42), &mut rays).x * PI / ALBEDO
+        tracer.direct_light(&surfel, DVec3::Y, random4(0, i, 1, 42), 0, &mut rays).x * PI / ALBEDO
     }))
 }
 
@@ -146,11 +147,13 @@ fn blockers_between_shadow_and_blockers_behind_do_not() {
             add(&mut scene, slab(y), matte(Vec3::ZERO), Affine3A::IDENTITY);
             let tracer = Reference::new(&scene);
             let surfel = {
-                let hit = tracer.closest_hit(DVec3::new(0.25, 1e-3, 0.5), -DVec3::Y, f64::INFINITY).expect("the floor");
+                let hit =
+                    tracer.closest_hit(DVec3::new(0.25, 1e-3, 0.5), -DVec3::Y, f64::INFINITY, 0).expect("the floor");
                 tracer.surfel(&hit, DVec3::Y)
             };
             let found = Estimate::new(
-                (0..1000).map(|i| tracer.direct_light(&surfel, DVec3::Y, random4(0, i, 1, 42), &mut 0).x * PI / ALBEDO),
+                (0..1000)
+                    .map(|i| tracer.direct_light(&surfel, DVec3::Y, random4(0, i, 1, 42), 0, &mut 0).x * PI / ALBEDO),
             );
             assert!((found.mean - expected).abs() <= 1e-12, "slab at {y}: {} instead of {expected}", found.mean);
         }
@@ -178,10 +181,10 @@ fn short_shadow_rays_far_from_the_origin() {
         let random = random4(0, i, 1, 5);
         let [x, z] = [random[0], random[1]].map(|r| uniform(r) as f32 * 1.8 - 0.9);
         let (from, down) = (at(x, 5e-4, z), at(x, 0.0, z) - at(x, 5e-4, z));
-        let hit = tracer.closest_hit(from, down, f64::INFINITY).expect("the floor");
+        let hit = tracer.closest_hit(from, down, f64::INFINITY, 0).expect("the floor");
         assert_eq!(hit.object, 0);
         let surfel = tracer.surfel(&hit, -down.normalize());
-        let light = tracer.direct_light(&surfel, -down.normalize(), random4(0, i, 3, 5), &mut 0);
+        let light = tracer.direct_light(&surfel, -down.normalize(), random4(0, i, 3, 5), 0, &mut 0);
         assert!(light.x > 0.0, "the lamp or the floor shadows itself at ({x}, {z})");
     }
 }
@@ -194,7 +197,7 @@ fn shadow_rays_are_cast_for_light_only() {
     let count = |scene: &Scene| {
         let tracer = Reference::new(scene);
         let mut rays = 0;
-        tracer.direct_light(&surfel_at(&tracer, 0.0, 0.0), DVec3::Y, [0; 4], &mut rays);
+        tracer.direct_light(&surfel_at(&tracer, 0.0, 0.0), DVec3::Y, [0; 4], 0, &mut rays);
         rays
     };
     assert_eq!(count(&scene), 1);
@@ -211,7 +214,7 @@ fn light_does_not_leak_through_closed_walls() {
     let mut tilted = cube();
     tilted.normals = tilted.positions.iter().map(|p| (Vec3::new(1.5, 1.0, 0.5) * p.normalize()).normalize()).collect();
     let mut scene = empty(16, 16);
-    scene.sensor.fov = 120.0;
+    scene.sensor.projection = luminaire::scene::Projection::Perspective { fov: 120.0 };
     add(&mut scene, tilted, matte(Vec3::splat(0.9)), Affine3A::from_rotation_y(0.3));
     for direction in [Vec3::X, -Vec3::X, Vec3::Y, Vec3::Z] {
         scene.luminaires.push(point(direction * 3.0, 100.0));

@@ -8,7 +8,7 @@ use luminaire::reference::scatter::{scatter, survival};
 use luminaire::reference::surfel::Surfel;
 use luminaire::reference::warp::{concentric_disk, cosine_hemisphere, frame, uniform_triangle};
 use luminaire::sampling::{random4, uniform};
-use luminaire::scene::Scene;
+use luminaire::scene::{Directions, Scene};
 use std::f64::consts::PI;
 
 const N: u32 = 400_000;
@@ -134,7 +134,7 @@ fn scatter_weights_match_the_albedo() {
         let expected = directional_albedo(&surfel, wo);
         let weights = (0..N).map(|i| {
             let random = random4(i, 0, 9, 2);
-            scatter(&surfel, wo, uniform(random[0]), uniform(random[1])).1.x
+            scatter(&surfel, wo, Directions::Cosine, [uniform(random[0]), uniform(random[1]), 0.0]).weight.x
         });
         if resolution < 1e-9 {
             weights.for_each(|w| assert!((w - 0.35).abs() < 1e-15 || w == 0.0, "{w}"));
@@ -155,8 +155,8 @@ fn scatter_is_about_the_shading_normal() {
     let tilted = Surfel { shading_normal: normal, ..flat_surfel(DVec3::splat(0.5), DVec3::splat(0.0), 0.0) };
     let in_cap = (0..N).map(|i| {
         let random = random4(i, 0, 9, 4);
-        let (wi, weight) = scatter(&tilted, DVec3::Z, uniform(random[0]), uniform(random[1]));
-        if wi.dot(normal) > 0.9 { weight.x } else { 0.0 }
+        let s = scatter(&tilted, DVec3::Z, Directions::Cosine, [uniform(random[0]), uniform(random[1]), 0.0]);
+        if s.wi.dot(normal) > 0.9 { s.weight.x } else { 0.0 }
     });
     Estimate::new(in_cap).assert_is(0.5 * (1.0 - 0.81), 4e-3);
 }
@@ -196,7 +196,7 @@ fn sensor_rays() {
     let mut scene = empty(300, 200);
     scene.sensor.position = Vec3::new(1.0, 2.0, 3.0);
     scene.sensor.target = Vec3::new(1.0, 2.0, -5.0);
-    scene.sensor.fov = 40.0;
+    scene.sensor.projection = luminaire::scene::Projection::Perspective { fov: 40.0 };
     ball_at(&mut scene, Vec3::new(1.5, 2.0, 0.0), Vec3::X);
     ball_at(&mut scene, Vec3::new(1.0, 2.5, 0.0), Vec3::Y);
     let tracer = Reference::new(&scene);
@@ -232,7 +232,7 @@ fn normals_of_instances() {
             let direction = cosine_hemisphere(if i % 2 == 0 { DVec3::Z } else { -DVec3::Z }, random[0], random[1]);
             let direction = (direction * axes).normalize();
             let (origin, direction) = if inside { (DVec3::ZERO, direction) } else { (5.0 * direction, -direction) };
-            let hit = tracer.closest_hit(origin, direction, f64::INFINITY).expect("a hit");
+            let hit = tracer.closest_hit(origin, direction, f64::INFINITY, 0).expect("a hit");
             let surfel = tracer.surfel(&hit, -direction);
             let gradient = (surfel.position / (axes * axes)).normalize() * if inside { -1.0 } else { 1.0 };
             // Facets of a unit sphere of 5120 are tilted by up to 0.04; the squeeze makes that up to four times more.
@@ -254,7 +254,7 @@ fn shading_normal_falls_back() {
         let mut scene = empty(1, 1);
         add(&mut scene, triangle.clone(), matte(Vec3::ONE), Affine3A::from_mat3(Mat3::IDENTITY));
         let tracer = Reference::new(&scene);
-        let hit = tracer.closest_hit(DVec3::new(0.25, 0.25, 0.0) + wo, -wo, f64::INFINITY).expect("a hit");
+        let hit = tracer.closest_hit(DVec3::new(0.25, 0.25, 0.0) + wo, -wo, f64::INFINITY, 0).expect("a hit");
         tracer.surfel(&hit, wo).shading_normal
     };
     assert_eq!(normal(&triangle), DVec3::Z);

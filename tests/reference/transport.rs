@@ -8,18 +8,23 @@ use luminaire::reference::Reference;
 use luminaire::reference::warp::{cosine_hemisphere, uniform_triangle};
 use luminaire::render::Tracer;
 use luminaire::sampling::{random4, uniform};
-use luminaire::scene::{Integrator, Luminaire, LuminaireTable, Material, SampledLuminaire, Scene};
+use luminaire::scene::{Estimator, Integrator, Luminaire, LuminaireTable, Material, SampledLuminaire, Scene};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
 /// A closed shell around the sensor that emits 1.
 fn furnace(albedo: Vec3) -> Scene {
     let mut scene = empty(16, 16);
+    scene.integrator = preset("cosine");
     scene.sensor.position = Vec3::new(0.25, 0.125, 0.5);
     scene.sensor.target = Vec3::new(0.5, -1.0, 0.25);
     let glowing = Material { emission: Vec3::ONE, ..matte(albedo) };
     add(&mut scene, icosphere(3), glowing, Affine3A::IDENTITY);
     scene
+}
+
+fn preset(name: &str) -> Integrator {
+    Integrator::Path(Estimator::preset(name).expect("a preset"))
 }
 
 /// Mean of each channel over all pixels and samples.
@@ -47,7 +52,7 @@ fn furnace_of_any_albedo() {
 fn furnace_with_limited_bounces() {
     for bounces in [0, 1, 2, 5] {
         let mut scene = furnace(Vec3::splat(0.7));
-        scene.integrator = Integrator::Path { max_bounces: Some(bounces) };
+        estimator(&mut scene).max_bounces = Some(bounces);
         let a = f64::from(0.7f32);
         means(&scene, 200)[0].assert_is((0..=bounces as i32 + 1).map(|k| a.powi(k)).sum(), 5e-3);
     }
@@ -85,7 +90,8 @@ fn random_numbers_decide_what_the_table_says() {
         let place = Affine3A::from_translation(Vec3::new(x, 0.0, -0.5)) * Affine3A::from_scale(Vec3::splat(0.2));
         add(&mut scene, mesh(vec![Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]]), lamp(light), place);
     }
-    scene.integrator = Integrator::Path { max_bounces: Some(1) };
+    scene.integrator = preset("cosine");
+    estimator(&mut scene).max_bounces = Some(1);
     let table = LuminaireTable::new(&scene);
     let (mut lit, mut second) = (0, 0);
     for seed in [0, 77] {
@@ -96,7 +102,7 @@ fn random_numbers_decide_what_the_table_says() {
             let (mut origin, mut direction) = tracer.sensor_ray(pixel, sample);
             let (mut expected, mut throughput) = (DVec3::ZERO, DVec3::ONE);
             for bounce in [0, 1] {
-                let hit = tracer.closest_hit(origin, direction, f64::INFINITY).expect("a closed shell");
+                let hit = tracer.closest_hit(origin, direction, f64::INFINITY, 0).expect("a closed shell");
                 let surfel = tracer.surfel(&hit, -direction);
                 if bounce == 0 {
                     expected += surfel.emission;
@@ -108,16 +114,17 @@ fn random_numbers_decide_what_the_table_says() {
                 let point: DVec3 = (0..3).map(|i| weights[i] * triangle.vertices[i]).sum();
                 let d = point - surfel.position;
                 let cosines = d.normalize().dot(surfel.geometric_normal).max(0.0) * d.normalize().z.abs();
-                if !tracer.occluded(point - 0.999 * d, d, 0.998) {
+                if !tracer.occluded(point - 0.999 * d, d, 0.998, 0) {
                     let share = cosines * triangle.area() / d.length_squared() / table.choice.pdf[chosen];
-                    expected += throughput * surfel.lambert / PI * triangle.emission.as_dvec3() * share;
+                    let emission = scene.materials[triangle.material as usize].emission.as_dvec3();
+                    expected += throughput * surfel.lambert / PI * emission * share;
                     lit += 1;
                 }
                 let survival = surfel.lambert.max_element();
-                if uniform(light[3]) >= survival {
+                let turn = numbers(2 + 2 * bounce);
+                if uniform(turn[3]) >= survival {
                     break;
                 }
-                let turn = numbers(2 + 2 * bounce);
                 direction = cosine_hemisphere(surfel.shading_normal, uniform(turn[0]), uniform(turn[1]));
                 origin = surfel.offset_ray_origin(direction);
                 throughput *= surfel.lambert / survival;
@@ -157,7 +164,7 @@ fn surfaces_do_not_shadow_or_hit_themselves() {
     let mut shell = empty(32, 32);
     add(&mut shell, icosphere(3), matte(Vec3::splat(0.5)), Affine3A::IDENTITY);
     shell.luminaires.push(Luminaire::Point { position: Vec3::ZERO, intensity: Vec3::ONE });
-    shell.sensor.fov = 150.0;
+    shell.sensor.projection = luminaire::scene::Projection::Perspective { fov: 150.0 };
     let mut flat = shell.clone();
     flat.objects[0].object_to_world = stretched;
     for (scale, shift) in [
@@ -172,16 +179,16 @@ fn surfaces_do_not_shadow_or_hit_themselves() {
             let tracer = Reference::new(&scene);
             for i in 0..20_000 {
                 let (origin, direction) = tracer.sensor_ray(i % 1024, i / 1024);
-                let hit = tracer.closest_hit(origin, direction, f64::INFINITY).expect("a closed shell");
+                let hit = tracer.closest_hit(origin, direction, f64::INFINITY, 0).expect("a closed shell");
                 let surfel = tracer.surfel(&hit, -direction);
                 let mut rays = 0;
-                let light = tracer.direct_light(&surfel, -direction, [0; 4], &mut rays);
+                let light = tracer.direct_light(&surfel, -direction, [0; 4], 0, &mut rays);
                 assert!(light.x > 0.0 && rays == 1, "the shell shadows itself at {}", surfel.position);
                 // Along the normal, slanted, and grazing down to a millionth.
                 let (tangent, _) = luminaire::reference::warp::frame(surfel.geometric_normal);
                 for rise in [1.0, 0.1, 1e-3, 1e-6] {
                     let wi = (tangent + rise * surfel.geometric_normal).normalize();
-                    let next = tracer.closest_hit(surfel.offset_ray_origin(wi), wi, f64::INFINITY);
+                    let next = tracer.closest_hit(surfel.offset_ray_origin(wi), wi, f64::INFINITY, 0);
                     let next = next.unwrap_or_else(|| panic!("a ray leaves the shell at {}", surfel.position));
                     assert_ne!(next.triangle, hit.triangle, "hits itself at rise {rise}, t = {}", next.t);
                 }
@@ -267,7 +274,7 @@ fn the_partition_of_the_work_does_not_matter() {
 fn non_finite_samples_are_counted() {
     let mut scene = furnace(Vec3::splat(0.5));
     scene.materials[0].emission = Vec3::new(f32::NAN, 1.0, 1.0);
-    scene.integrator = Integrator::Path { max_bounces: Some(0) };
+    estimator(&mut scene).max_bounces = Some(0);
     let tile = Tile { x: 0, y: 0, width: 16, height: 16 };
     let traced = Reference::new(&scene).trace(&Batch { tile, samples: 0..3, group: 3 }).expect("traced");
     assert_eq!(traced.non_finite, 3 * 256);

@@ -1,0 +1,50 @@
+// Light from where rays escape to: a latitude-longitude image, +y up, -z in its middle; twins in src/reference/environment.rs.
+
+// Column and row, in texels from the upper left, where a direction falls.
+vec2 environment_point(vec3 direction) {
+    float column = angle(direction.x, -direction.z) * (0.5 / PI) + 0.5 + frame.environment_rotation;
+    float row = angle(length(direction.xz), direction.y) * (1.0 / PI);
+    return vec2(column - floor(column), row) * vec2(frame.environment_width, frame.environment_height);
+}
+
+vec4 environment_texel(int x, int y) {
+    int width = int(frame.environment_width);
+    x = x < 0 ? x + width : (x >= width ? x - width : x);
+    y = clamp(y, 0, int(frame.environment_height) - 1);
+    return uintBitsToFloat(texelFetch(environment_texels, y * width + x));
+}
+
+// Radiance from a direction, bilinear between the centres of texels.
+vec3 environment_radiance(vec3 direction) {
+    vec2 p = environment_point(direction) - 0.5;
+    vec2 low = floor(p);
+    vec2 f = p - low;
+    int x = int(low.x);
+    int y = int(low.y);
+    vec3 upper = mix(environment_texel(x, y).rgb, environment_texel(x + 1, y).rgb, f.x);
+    vec3 lower = mix(environment_texel(x, y + 1).rgb, environment_texel(x + 1, y + 1).rgb, f.x);
+    return mix(upper, lower, f.y) * frame.environment.rgb;
+}
+
+// The density with which sample_environment gives a direction, per steradian.
+float environment_density(vec3 direction) {
+    vec2 p = environment_point(direction);
+    return environment_texel(int(p.x), int(p.y)).a;
+}
+
+// A direction by the light that comes from it: a texel by the alias table, then evenly over its solid angle.
+vec3 sample_environment(uint random, vec2 u, out float density) {
+    uint width = frame.environment_width;
+    uint slot, fraction;
+    umulExtended(random, width * frame.environment_height, slot, fraction);
+    uvec4 pair = texelFetch(environment_slots, int(slot >> 1u));
+    uvec2 entry = (slot & 1u) == 0u ? pair.xy : pair.zw;
+    uint texel = fraction < entry.x ? slot : entry.y;
+    uint row = texel / width;
+    density = uintBitsToFloat(texelFetch(environment_texels, int(texel)).w);
+    vec2 azimuth = sin_cos_turns((float(texel - row * width) + u.x) / float(width) - 0.5 - frame.environment_rotation);
+    float step = 0.5 / float(frame.environment_height);
+    float cosine = mix(sin_cos_turns(float(row) * step).y, sin_cos_turns(float(row + 1u) * step).y, u.y);
+    float sine = sqrt(max(0.0, (1.0 - cosine) * (1.0 + cosine)));
+    return vec3(sine * azimuth.x, cosine, -sine * azimuth.y);
+}

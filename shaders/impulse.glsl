@@ -1,0 +1,59 @@
+// Impulses (slides "Impulse Reflection", "Adding Transmission"): mirrors and smooth dielectrics; twins in src/reference/impulse.rs.
+
+// Reflectance of a smooth dielectric for unpolarised light; `eta` is the index behind the surface over that in front of it.
+float fresnel(float eta, float cos_i) {
+    float sine2 = (1.0 - cos_i * cos_i) / (eta * eta);
+    if (sine2 >= 1.0) return 1.0;
+    float cos_t = sqrt(1.0 - sine2);
+    float s = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
+    float p = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
+    return 0.5 * (s * s + p * p);
+}
+
+// The direction on the other side of a smooth surface; zero where all is reflected.
+vec3 refract_direction(vec3 wo, vec3 n, float eta) {
+    float cos_i = dot(wo, n);
+    float sine2 = (1.0 - cos_i * cos_i) / (eta * eta);
+    if (sine2 >= 1.0) return vec3(0.0);
+    return normalize((cos_i / eta - sqrt(1.0 - sine2)) * n - wo / eta);
+}
+
+vec3 reflect_direction(vec3 wo, vec3 n) { return 2.0 * dot(wo, n) * n - wo; }
+
+// What the impulses at a surfel do with light from one side.
+struct Impulses {
+    vec3 reflected;       // albedo
+    vec3 transmitted;     // albedo
+    vec3 normal;          // the one that both directions go by
+    float eta;            // index on the other side over that on the side of wo; 0 for a mirror
+    float probability;    // with which a path takes an impulse
+};
+
+float average(vec3 v) { return (v.x + v.y + v.z) * (1.0 / 3.0); }
+
+Impulses impulses(Surfel s, Material material, vec3 wo) {
+    Impulses i = Impulses(vec3(0.0), vec3(0.0), s.shading_normal, 0.0, 0.0);
+    if (!IMPULSES) return i;
+    vec3 rest = material.lambert.rgb;
+    if (GLOSSY) rest += material.glossy.rgb;
+    i.reflected = material.reflection.rgb;
+    if (DIELECTRICS && material.reflection.w > 0.0) i.eta = s.front ? material.reflection.w : 1.0 / material.reflection.w;
+    // A direction on the wrong side of the triangle: the triangle's own normal instead.
+    if (VERTEX_NORMALS) {
+        bool wrong = dot(reflect_direction(wo, i.normal), s.geometric_normal) <= 0.0;
+        if (DIELECTRICS && i.eta > 0.0) wrong = wrong || dot(refract_direction(wo, i.normal, i.eta), s.geometric_normal) > 0.0;
+        if (wrong) i.normal = s.geometric_normal;
+    }
+    if (DIELECTRICS && i.eta > 0.0) {
+        float f = fresnel(i.eta, min(dot(wo, i.normal), 1.0));
+        i.reflected *= f;
+        i.transmitted = material.transmission.rgb * (1.0 - f);
+    }
+    float impulse = average(i.reflected + i.transmitted);
+    float other = average(rest);
+    if (impulse > 0.0) {
+        if (other == 0.0) i.probability = 1.0;
+        else i.probability = material.lambert.w >= 0.0 ? material.lambert.w : impulse / (impulse + other);
+    }
+    return i;
+}

@@ -1,0 +1,57 @@
+// Images on surfaces; twins in src/reference/texture.rs.
+
+vec2 uv_at(uint triangle, vec2 barycentric) {
+    vec4 ab = uintBitsToFloat(texelFetch(uvs, int(2u * triangle)));
+    vec2 c = uintBitsToFloat(texelFetch(uvs, int(2u * triangle + 1u)).xy);
+    return (1.0 - barycentric.x - barycentric.y) * ab.xy + barycentric.x * ab.zw + barycentric.y * c;
+}
+
+vec4 texel_at(uint index) {
+    uvec4 pair = texelFetch(texels, int(index >> 1u));
+    uvec2 halves = (index & 1u) == 0u ? pair.xy : pair.zw;
+    return vec4(unpackHalf2x16(halves.x), unpackHalf2x16(halves.y));
+}
+
+// Linear RGB and alpha, bilinear between the centres of texels; v points up.
+vec4 texture_at(uint map, vec2 uv) {
+    uvec4 image = texelFetch(textures, int(map));
+    ivec2 size = ivec2(image.yz);
+    // By the bits: a compiler may assume that no float is infinite.
+    if (any(equal(floatBitsToUint(uv) & 0x7f800000u, uvec2(0x7f800000u)))) uv = vec2(0.0);
+    bool clamped = image.w != 0u;
+    uv = clamped ? clamp(uv, vec2(0.0), vec2(1.0)) : uv - floor(uv);
+    vec2 p = vec2(uv.x, 1.0 - uv.y) * vec2(size) - 0.5;
+    vec2 low = floor(p);
+    vec2 f = p - low;
+    ivec2 p0 = ivec2(low);
+    ivec2 p1 = p0 + 1;
+    if (clamped) {
+        p0 = clamp(p0, ivec2(0), size - 1);
+        p1 = clamp(p1, ivec2(0), size - 1);
+    } else {
+        p0 = mix(p0, p0 + size, lessThan(p0, ivec2(0)));
+        p1 = mix(p1, p1 - size, greaterThanEqual(p1, size));
+    }
+    uint row0 = image.x + uint(p0.y) * image.y;
+    uint row1 = image.x + uint(p1.y) * image.y;
+    vec4 upper = mix(texel_at(row0 + uint(p0.x)), texel_at(row0 + uint(p1.x)), f.x);
+    vec4 lower = mix(texel_at(row1 + uint(p0.x)), texel_at(row1 + uint(p1.x)), f.x);
+    return mix(upper, lower, f.y);
+}
+
+// The share of light that meets a point of a triangle at all.
+float opacity_at(uint material, uint triangle, vec2 barycentric) {
+    float opacity = materials[material].transmission.w;
+    uint map = materials[material].opacity_map;
+    if (map != NONE) opacity *= texture_at(map, uv_at(triangle, barycentric)).a;
+    return opacity;
+}
+
+// Whether a ray stops at a hit, by chance where the surface is partly transparent.
+bool covers(uint salt, uint object, uint triangle, vec2 barycentric) {
+    uint material = INSTANCES ? objects[object].material : NONE;
+    if (material == NONE) material = texelFetch(triangles, int(3u * triangle)).w;
+    if (materials[material].transmission.w >= 1.0 && materials[material].opacity_map == NONE) return true;
+    uint original = texelFetch(triangles, int(3u * triangle + 1u)).w;
+    return uniform1(coverage(salt, objects[object].scene_index, original)) < opacity_at(material, triangle, barycentric);
+}

@@ -1,0 +1,45 @@
+//! Images on surfaces: what a material's numbers are at a point.
+
+use super::Reference;
+use super::surfel::interpolate;
+use crate::scene::{Material, Mesh, Texture, Triangle};
+use glam::{DVec2, DVec4};
+
+/// Colour and alpha of a texture at `uv`, bilinear between the centres of the texels. `v` points up: row 0 is the image's top.
+///
+/// Coordinates repeat, or stay at the border if the texture says so; one that is not finite counts as 0.
+pub fn bilinear(texture: &Texture, uv: DVec2) -> DVec4 {
+    let finite = |x: f64| if x.is_finite() { x } else { 0.0 };
+    let (width, height) = (f64::from(texture.width), f64::from(texture.height));
+    let x = finite(uv.x) * width - 0.5;
+    let y = (1.0 - finite(uv.y)) * height - 0.5;
+    let inside = |i: f64, n: f64| if texture.clamp { i.clamp(0.0, n - 1.0) } else { i.rem_euclid(n) };
+    let texel = |column: f64, row: f64| {
+        let index = inside(row, height) as usize * texture.width as usize + inside(column, width) as usize;
+        DVec4::from_array(texture.texels[index].map(|number| number.to_f64()))
+    };
+    let (column, row) = (x.floor(), y.floor());
+    let upper = texel(column, row).lerp(texel(column + 1.0, row), x - column);
+    let lower = texel(column, row + 1.0).lerp(texel(column + 1.0, row + 1.0), x - column);
+    upper.lerp(lower, y - row)
+}
+
+/// Texture coordinates at a point of a triangle that has these weights; 0 where the mesh has none.
+pub(super) fn texture_coordinates(mesh: &Mesh, triangle: &Triangle, weights: [f64; 3]) -> DVec2 {
+    if mesh.uvs.is_empty() {
+        return DVec2::ZERO;
+    }
+    interpolate(weights, triangle.vertices.map(|v| mesh.uvs[v as usize].as_dvec2().extend(0.0))).truncate()
+}
+
+impl Reference {
+    /// The texel of a material's map at `uv`; 1 without a map.
+    pub(super) fn map(&self, map: Option<u32>, uv: DVec2) -> DVec4 {
+        map.map_or(DVec4::ONE, |texture| bilinear(&self.scene.textures[texture as usize], uv))
+    }
+
+    /// Share of the light that meets a surface of this material at `uv`; the rest passes straight on.
+    pub(super) fn opacity(&self, material: &Material, uv: DVec2) -> f64 {
+        f64::from(material.opacity) * self.map(material.maps.opacity, uv).w
+    }
+}
