@@ -6,4 +6,5 @@ mod common;
 mod intersection;
 mod light;
 mod sampling;
+mod sensor;
 mod transport;
