@@ -3,7 +3,12 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod environment;
+mod estimators;
+mod impulses;
 mod intersection;
 mod light;
 mod sampling;
+mod scattering;
+mod textures;
 mod transport;
