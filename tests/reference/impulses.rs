@@ -57,7 +57,9 @@ fn fresnel_is_symmetric_and_conserves_energy() {
             };
             assert!((wi.length() - 1.0).abs() < 1e-14 && wi.z < 0.0);
             assert!((sin + eta * wi.x).abs() < 1e-14, "Snell's law, in the plane of incidence");
-            assert!((f - fresnel(1.0 / eta, -wi.z)).abs() < 1e-12);
+            // The smaller cosine has lost digits.
+            let there = fresnel(1.0 / eta, -wi.z);
+            assert!((f - there).abs() < 1e-14 / cos.min(-wi.z), "{f} and {there} at cos = {cos}, eta = {eta}");
             let back = refract(wi, -DVec3::Z, 1.0 / eta).expect("light goes either way");
             assert!((back - wo).length() < 1e-7);
             assert!((reflect(wo, DVec3::Z) - DVec3::new(-sin, 0.0, cos)).length() < 1e-15);
@@ -69,6 +71,8 @@ fn fresnel_is_symmetric_and_conserves_energy() {
 /// estimator: what reflection takes, transmission gives, and the factors of `eta^2` cancel.
 #[test]
 fn glass_is_invisible_in_a_uniform_environment() {
+    // With normals that are not the body's own, some rays are caught for thousands of reflections: one such body, of an index where they
+    // are rare.
     let mut smooth = icosphere(2);
     smooth.normals = smooth.positions.clone();
     let place = Affine3A::from_translation(-Vec3::Z * 3.0);
@@ -77,11 +81,11 @@ fn glass_is_invisible_in_a_uniform_environment() {
     let variants = [
         (Estimator::default(), icosphere(1), place, 1.5),
         (throughput, icosphere(1), mirrored, 2.4),
-        (throughput, smooth.clone(), mirrored, 1.5),
+        (throughput, smooth, mirrored, 1.5),
         (throughput, cube(), place * Affine3A::from_rotation_y(0.5), 0.7),
         (
             Estimator { light_sampling: LightSampling::Direct, extinction: Extinction::Surface, ..throughput },
-            smooth,
+            icosphere(2),
             place,
             1.3,
         ),
@@ -94,8 +98,8 @@ fn glass_is_invisible_in_a_uniform_environment() {
         scene.environment = Some(white());
         scene.integrator = Integrator::Path(estimator);
         for mean in means(&scene, 600) {
-            assert!((mean.mean - 1.0).abs() < 0.05, "variant {index}: {mean:?}");
-            mean.assert_is(1.0, 1e-2);
+            assert!((mean.mean - 1.0).abs() < 0.01, "variant {index}: {mean:?}");
+            mean.assert_is(1.0, 1e-3);
         }
     }
 }
@@ -153,7 +157,7 @@ fn mirrored_glass_is_glass() {
         bent += u32::from(rays > 2);
     }
     // A ray through an edge may go either way.
-    assert!(different <= 2 && bent > 1000, "{different} different of {bent}");
+    assert!(different <= 2 && bent > 500, "{different} different of {bent}");
 }
 
 /// A ray leaves a plane-parallel plate of thickness `d` in its old direction, displaced by `d sin t (1 - cos t / (eta cos t'))`.
