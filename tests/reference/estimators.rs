@@ -79,8 +79,8 @@ fn limits_mean_the_same_to_all() {
     }
 }
 
-/// In the furnace a limit of `k` leaves `1 + a + ... + a^(k + 1)`, by every estimator; the shell, which emits, does not light itself from the
-/// edge.
+/// In the furnace a limit of `k` leaves `1 + a + ... + a^(k + 1)`, by every estimator; the shell, which emits, does not light
+/// itself from the edge.
 #[test]
 fn limited_furnaces() {
     let mut scene = furnace(Vec3::splat(0.7));

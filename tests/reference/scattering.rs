@@ -178,8 +178,8 @@ fn the_test_of_densities_has_power() {
     assert!(p < 1e-9, "p = {p}");
 }
 
-/// All that is scattered, impulses included, is what was there, at every angle and for every exponent; and no more than what arrived. The mean
-/// weight does not depend on how directions are chosen, nor on the probability of impulses.
+/// All that is scattered, impulses included, is what was there, at every angle and for every exponent; and no more than what arrived. The
+/// mean weight does not depend on how directions are chosen, nor on the probability of impulses.
 #[test]
 fn directional_albedo_is_at_most_one() {
     let mut block = 100;
