@@ -86,9 +86,8 @@ impl Faces {
         let mut normals = vec![None; self.corners.len()];
         for incidents in self.points(positions).filter(|incidents| incidents.len() <= MOST_FACES_AT_A_POINT) {
             for this in &incidents {
-                let near = |other: &&Incident| {
-                    other.corner == this.corner || other.normal.dot(this.normal) > least_cosine
-                };
+                let near =
+                    |other: &&Incident| other.corner == this.corner || other.normal.dot(this.normal) > least_cosine;
                 let sum: DVec3 = incidents.iter().filter(near).map(|other| other.angle * other.normal).sum();
                 normals[this.corner] = sum.try_normalize().map(DVec3::as_vec3);
             }
