@@ -241,6 +241,11 @@ impl Current {
             self.draft.maps.glossy = MapDraft::Unstated;
         }
         // `d` and `Tr` say the same in opposite ways, and exporters disagree on `Tr`: `d` wins where both are given.
+        if let (Some(d), Some(tr)) = (self.dissolve, self.transparency)
+            && (d + tr - 1.0).abs() > 1e-3
+        {
+            self.draft.notes.push(format!("{at}: d {d} and Tr {tr} contradict each other; d counts"));
+        }
         let opacity = self.dissolve.or(self.transparency.map(|tr| 1.0 - tr));
         self.draft.opacity = opacity.map(|d| d.clamp(0.0, 1.0));
     }
