@@ -160,9 +160,12 @@ impl Faces {
             for corner in 0..corners.len() {
                 // Adding 0 makes -0 the same as 0.
                 let bits = (at(corner) + Vec3::ZERO).to_array().map(f32::to_bits);
-                let (before, after) = (point(corner + corners.len() - 1), point(corner + 1));
-                let (a, b) = (before - point(corner), after - point(corner));
-                let angle = a.cross(b).length().atan2(a.dot(b));
+                // Some corners of a face may lie on each other, at the pole of a sphere for example.
+                let here = point(corner);
+                let count = corners.len();
+                let before = (1..count).map(|k| point(corner + count - k) - here).find(|edge| *edge != DVec3::ZERO);
+                let after = (1..count).map(|k| point(corner + k) - here).find(|edge| *edge != DVec3::ZERO);
+                let angle = before.zip(after).map_or(0.0, |(a, b)| a.cross(b).length().atan2(a.dot(b)));
                 let incident =
                     Incident { corner: first + corner, smoothing_group: face.smoothing_group, normal, angle };
                 match index.get(&bits) {

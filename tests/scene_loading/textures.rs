@@ -174,16 +174,22 @@ fn a_missing_or_broken_texture_is_seen() {
 
 #[test]
 fn an_image_bomb_is_refused() {
-    // A BMP header that claims 2^31 - 1 by 16 texels, and one of 16384 x 16384 that are not there.
-    for (width, height) in [(i32::MAX, 16i32), (100_000, 100_000), (16_384, 16_384)] {
-        let mut bmp = b"BM\0\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0".to_vec();
-        bmp.extend(width.to_le_bytes());
-        bmp.extend(height.to_le_bytes());
-        bmp.extend(b"\x01\0\x18\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0");
-        let scene = textured("map_Kd a.bmp").with("a.bmp", bmp).load("mesh.obj");
-        assert!(is_fallback(diffuse(&scene)), "{width} x {height}");
-        let words: &[&str] = if width > 16_384 { &["a.bmp", "too large", "16384"] } else { &["a.bmp"] };
-        warned(&scene, words);
+    let tga = |width: u16, height: u16| {
+        let size = [width.to_le_bytes(), height.to_le_bytes()].concat();
+        [b"\0\0\x02\0\0\0\0\0\0\0\0\0".to_vec(), size, vec![24, 0]].concat()
+    };
+    let hdr = |text: &str| format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n{text}\n").into_bytes();
+    for (name, header, words) in [
+        ("a.tga", tga(16_385, 1), &["too large", "16384"][..]),
+        ("a.tga", tga(1, 65_535), &["too large", "16384"]),
+        ("a.hdr", hdr("-Y 16384 +X 16384"), &["too large", "1 GiB"]),
+        ("a.hdr", hdr("-Y 2147483647 +X 2147483647"), &[]),
+        ("a.tga", tga(16_384, 16_384), &[]),
+        ("a.tga", tga(0, 5), &[]),
+    ] {
+        let scene = textured(&format!("map_Kd {name}")).with(name, header).load("mesh.obj");
+        assert!(is_fallback(diffuse(&scene)), "{words:?}");
+        warned(&scene, &[&[name, "cannot be used"], words].concat());
     }
 }
 
