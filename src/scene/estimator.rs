@@ -128,3 +128,34 @@ impl Estimator {
         self.extinction != Extinction::Off || self.max_bounces.is_some()
     }
 }
+
+/// What replaces parts of an [`Estimator`]; none: the part stays.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct EstimatorChanges {
+    /// See [`Estimator::light_sampling`].
+    pub light_sampling: Option<LightSampling>,
+    /// See [`Estimator::area_sampling`].
+    pub area_sampling: Option<AreaSampling>,
+    /// See [`Estimator::directions`].
+    pub directions: Option<Directions>,
+    /// See [`Estimator::extinction`].
+    pub extinction: Option<Extinction>,
+    /// See [`Estimator::albedo_threshold`].
+    pub albedo_threshold: Option<f32>,
+    /// See [`Estimator::max_bounces`].
+    pub max_bounces: Option<u32>,
+}
+
+impl EstimatorChanges {
+    /// The estimator with these parts replaced.
+    pub fn apply(&self, estimator: Estimator) -> Estimator {
+        Estimator {
+            light_sampling: self.light_sampling.unwrap_or(estimator.light_sampling),
+            area_sampling: self.area_sampling.unwrap_or(estimator.area_sampling),
+            directions: self.directions.unwrap_or(estimator.directions),
+            extinction: self.extinction.unwrap_or(estimator.extinction),
+            albedo_threshold: self.albedo_threshold.or(estimator.albedo_threshold),
+            max_bounces: self.max_bounces.or(estimator.max_bounces),
+        }
+    }
+}

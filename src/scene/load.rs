@@ -1,9 +1,10 @@
 //! From a path to a [`Scene`].
 
-use super::material::Draft;
-use super::{Material, Mesh, Object, Scene, mtl, obj, preview, toml};
+use super::material::{Draft, DraftMaps};
+use super::texture::Textures;
+use super::{Maps, Material, Mesh, Object, Scene, Texture, mtl, obj, preview, toml};
 use crate::{Error, Result};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 /// World coordinates beyond this are refused: their squares would leave the range of `f32`.
@@ -49,8 +50,19 @@ pub(super) struct Loader {
     defined: HashMap<String, u32>,
     /// For each mesh, the materials of its MTL files by name.
     named: Vec<HashMap<String, u32>>,
-    mesh_files: HashMap<PathBuf, u32>,
+    /// For each mesh, where its file first uses a material without texture coordinates.
+    without_uv: Vec<Vec<WithoutUv>>,
+    /// By file and the bits of `smooth`.
+    mesh_files: HashMap<(PathBuf, Option<u32>), u32>,
     libraries: HashMap<PathBuf, HashMap<String, u32>>,
+}
+
+/// Faces of one material that lack texture coordinates.
+#[derive(Debug)]
+struct WithoutUv {
+    material: u32,
+    /// `FILE:LINE`.
+    at: String,
 }
 
 impl Loader {
@@ -63,22 +75,25 @@ impl Loader {
             overrides,
             defined: HashMap::new(),
             named: Vec::new(),
+            without_uv: Vec::new(),
             mesh_files: HashMap::new(),
             libraries: HashMap::new(),
         }
     }
 
-    /// The mesh of an OBJ file with its MTL files; the same file is loaded once.
+    /// The mesh of an OBJ file with its MTL files; the same file is loaded once. `smooth`: see [`obj::read`].
     ///
     /// # Errors
     /// If the OBJ cannot be read or is wrong. A missing or wrong MTL file is a warning.
-    pub(super) fn mesh(&mut self, path: &Path) -> Result<u32> {
-        let identity = identity(path);
+    pub(super) fn mesh(&mut self, path: &Path, smooth: Option<f32>) -> Result<u32> {
+        let identity = (identity(path), smooth.map(f32::to_bits));
         if let Some(mesh) = self.mesh_files.get(&identity) {
             return Ok(*mesh);
         }
-        let obj::Obj { mut mesh, materials, libraries, warnings } = obj::read(path)?;
-        self.warnings.extend(warnings);
+        let obj::Obj { mut mesh, materials, libraries, without_uv, warnings } = obj::read(path, smooth)?;
+        // The same file with another `smooth` has the same faults.
+        let first = !self.mesh_files.keys().any(|(file, _)| *file == identity.0);
+        self.warnings.extend(warnings.into_iter().filter(|warning| first || warning.contains("`smooth`")));
         let mut named = HashMap::new();
         for (names, line) in &libraries {
             self.library_line(path, *line, names, &mut named);
@@ -93,7 +108,7 @@ impl Loader {
             }
             material_of.push(index.unwrap_or(0));
         }
-        if let Some((_, line)) = missing.first() {
+        if let Some((_, line)) = missing.first().filter(|_| first) {
             let names: Vec<String> = missing.iter().take(8).map(|(name, _)| format!("`{name}`")).collect();
             let more = if missing.len() > names.len() {
                 format!(" and {} more", missing.len() - names.len())
@@ -112,6 +127,9 @@ impl Loader {
         let index = self.meshes.len() as u32;
         self.meshes.push(mesh);
         self.named.push(named);
+        let at = |line| format!("{}:{line}", path.display());
+        let without_uv = without_uv.iter().map(|(slot, line)| WithoutUv { material: material_of[*slot], at: at(*line) });
+        self.without_uv.push(without_uv.collect());
         self.mesh_files.insert(identity, index);
         Ok(index)
     }
@@ -123,9 +141,9 @@ impl Loader {
         own.or_else(any).or_else(|| self.define(name))
     }
 
-    /// Applies the scene file's materials and fills in every default. Only materials that some triangle of `objects` shows
-    /// are worth a warning.
-    pub(super) fn finish_materials(&mut self, objects: &[Object]) -> Vec<Material> {
+    /// Applies the scene file's materials, fills in every default and loads the textures. Only materials that some triangle of
+    /// `objects` shows are worth a warning or a texture.
+    pub(super) fn finish_materials(&mut self, objects: &[Object]) -> (Vec<Material>, Vec<Texture>) {
         for change in &self.overrides {
             let mut known = false;
             for draft in self.drafts.iter_mut().filter(|draft| draft.name == change.name) {
@@ -146,15 +164,34 @@ impl Loader {
                 }
             }
         }
+        let mut textures = Textures::default();
         let mut materials = Vec::new();
         for (draft, shown) in self.drafts.iter().zip(shown) {
-            let mut warnings = Vec::new();
-            materials.push(draft.finish(&mut warnings));
             if shown {
-                self.warnings.append(&mut warnings);
+                materials.push(draft.finish(&mut textures, &mut self.warnings));
+            } else {
+                let without_maps = Draft { maps: DraftMaps::default(), ..draft.clone() };
+                materials.push(without_maps.finish(&mut textures, &mut Vec::new()));
             }
         }
-        materials
+        self.warn_of_missing_uvs(objects, &materials);
+        (materials, textures.loaded)
+    }
+
+    /// Maps need texture coordinates.
+    fn warn_of_missing_uvs(&mut self, objects: &[Object], materials: &[Material]) {
+        let mut said = HashSet::new();
+        for object in objects {
+            for WithoutUv { material, at } in &self.without_uv[object.mesh as usize] {
+                let material = &materials[object.material.unwrap_or(*material) as usize];
+                if material.maps != Maps::default() && said.insert((&material.name, at)) {
+                    self.warnings.push(format!(
+                        "{at}: faces without texture coordinates, but material `{}` has maps; (0, 0) is used",
+                        material.name
+                    ));
+                }
+            }
+        }
     }
 
     /// A new material, if the scene file has one of this name; the same one the next time.

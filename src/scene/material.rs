@@ -1,12 +1,15 @@
 //! A material while it is still being read: what nobody has said yet is `None`.
 
-use super::Material;
+use super::texture::{MapFile, Textures};
+use super::{Maps, Material, Texture};
 use glam::Vec3;
 
 /// The exponent of a glossy material that states none.
 pub(super) const DEFAULT_EXPONENT: f32 = 10.0;
 /// The diffuse albedo of a material that states no colour at all.
 pub(super) const DEFAULT_LAMBERT: Vec3 = Vec3::splat(0.8);
+/// The index of refraction of glass that states none.
+pub(super) const DEFAULT_ETA: f32 = 1.5;
 
 /// What MTL and scene file say about a material.
 #[derive(Debug, Clone, Default)]
@@ -23,8 +26,60 @@ pub(super) struct Draft {
     pub exponent: Option<f32>,
     /// `Ke`.
     pub emission: Option<Vec3>,
-    /// What the MTL file asks for and nothing models, ready to be a warning.
-    pub not_modelled: Option<String>,
+    /// Albedo of the impulse reflection.
+    pub reflection: Option<Vec3>,
+    /// Albedo of the impulse transmission.
+    pub transmission: Option<Vec3>,
+    /// Index of refraction, greater than 0.
+    pub eta: Option<f32>,
+    /// Probability of taking an impulse.
+    pub impulse_probability: Option<f32>,
+    /// `d`.
+    pub opacity: Option<f32>,
+    /// The maps of all these.
+    pub maps: DraftMaps,
+    /// What the MTL file asks for and nothing models, or what had to be guessed: warnings, if the material is in use.
+    pub notes: Vec<String>,
+}
+
+/// The maps of a [`Draft`].
+#[derive(Debug, Clone, Default)]
+pub(super) struct DraftMaps {
+    /// `map_Ka`.
+    pub ambient: MapDraft,
+    /// `map_Kd`.
+    pub diffuse: MapDraft,
+    /// `map_Ks`.
+    pub glossy: MapDraft,
+    /// `map_Ke`.
+    pub emission: MapDraft,
+    /// `map_d`.
+    pub opacity: MapDraft,
+}
+
+/// What is said about a map.
+#[derive(Debug, Clone, Default)]
+pub(super) enum MapDraft {
+    /// Nothing.
+    #[default]
+    Unstated,
+    /// That there shall be none.
+    Removed,
+    /// Where it is.
+    File(MapFile),
+}
+
+impl MapDraft {
+    fn overlay(&mut self, other: &MapDraft) {
+        if !matches!(other, MapDraft::Unstated) {
+            *self = other.clone();
+        }
+    }
+
+    /// The file, if there is one.
+    pub(super) fn file(&self) -> Option<&MapFile> {
+        if let MapDraft::File(map) = self { Some(map) } else { None }
+    }
 }
 
 impl Draft {
@@ -33,54 +88,168 @@ impl Draft {
         Draft { name: name.to_owned(), ..Draft::default() }
     }
 
-    /// Replaces the colours and the exponent that `other` states.
+    /// Replaces what `other` states.
     pub(super) fn overlay(&mut self, other: &Draft) {
         self.ambient = other.ambient.or(self.ambient);
         self.diffuse = other.diffuse.or(self.diffuse);
         self.glossy = other.glossy.or(self.glossy);
         self.exponent = other.exponent.or(self.exponent);
         self.emission = other.emission.or(self.emission);
+        self.reflection = other.reflection.or(self.reflection);
+        self.transmission = other.transmission.or(self.transmission);
+        self.eta = other.eta.or(self.eta);
+        self.impulse_probability = other.impulse_probability.or(self.impulse_probability);
+        self.opacity = other.opacity.or(self.opacity);
+        self.maps.ambient.overlay(&other.maps.ambient);
+        self.maps.diffuse.overlay(&other.maps.diffuse);
+        self.maps.glossy.overlay(&other.maps.glossy);
+        self.maps.emission.overlay(&other.maps.emission);
+        self.maps.opacity.overlay(&other.maps.opacity);
     }
 
-    /// Fills in the defaults and scales down what would create energy; each such decision is a warning.
+    /// Fills in the defaults, loads the maps and scales down what would create energy; each such decision is a warning.
     ///
-    /// A missing diffuse albedo is 0.8, but 0 where the material is described by a glossy albedo or an emission alone; a
-    /// missing ambient albedo is the diffuse one.
-    pub(super) fn finish(&self, warnings: &mut Vec<String>) -> Material {
+    /// A missing number whose map is given is 1. Without a map, a missing diffuse albedo is 0.8, but 0 where the material is
+    /// described by another albedo or an emission alone; a missing ambient albedo is the diffuse one with its map.
+    pub(super) fn finish(&self, textures: &mut Textures, warnings: &mut Vec<String>) -> Material {
         let name = &self.name;
-        warnings.extend(self.not_modelled.clone());
-        let mut glossy = self.glossy.unwrap_or(Vec3::ZERO);
-        let other_colour = self.glossy.is_some() || self.emission.is_some();
-        let mut lambert = self.diffuse.unwrap_or(if other_colour { Vec3::ZERO } else { DEFAULT_LAMBERT });
-        let ambient = self.ambient.unwrap_or(lambert);
-        if glossy != Vec3::ZERO && self.exponent.is_none() {
+        warnings.extend(self.notes.iter().cloned());
+        let one_if = |map: &MapDraft| if map.file().is_some() { Vec3::ONE } else { Vec3::ZERO };
+        let glossy = self.glossy.unwrap_or(one_if(&self.maps.glossy));
+        let emission = self.emission.unwrap_or(one_if(&self.maps.emission));
+        let transmission = self.transmission.unwrap_or(Vec3::ZERO);
+        // Light that goes through a surface is also reflected by it, unless somebody says otherwise.
+        let entered = if transmission == Vec3::ZERO { Vec3::ZERO } else { Vec3::ONE };
+        let reflection = self.reflection.unwrap_or(entered);
+        let described = [glossy, emission, reflection, transmission].iter().any(|colour| *colour != Vec3::ZERO)
+            || self.glossy.is_some()
+            || self.emission.is_some();
+        let lambert = self.diffuse.unwrap_or(match (self.maps.diffuse.file(), described) {
+            (Some(_), _) => Vec3::ONE,
+            (None, true) => Vec3::ZERO,
+            (None, false) => DEFAULT_LAMBERT,
+        });
+        let mut material = Material {
+            name: name.clone(),
+            ambient: match (self.ambient, self.maps.ambient.file()) {
+                (Some(ambient), _) => ambient,
+                (None, Some(_)) => Vec3::ONE,
+                (None, None) => lambert,
+            },
+            lambert,
+            glossy,
+            exponent: self.exponent.unwrap_or(DEFAULT_EXPONENT),
+            emission,
+            reflection,
+            transmission,
+            eta: self.eta,
+            impulse_probability: self.impulse_probability,
+            opacity: self.opacity.unwrap_or(1.0),
+            maps: Maps::default(),
+        };
+        if material.glossy != Vec3::ZERO && self.exponent.is_none() {
             warnings
                 .push(format!("material `{name}` is glossy but states no exponent (Ns); {DEFAULT_EXPONENT} is used"));
         }
-        let sum = (lambert + glossy).max_element();
-        if sum > 1.0 {
-            let mut factor = 1.0 / sum;
-            while (lambert * factor + glossy * factor).max_element() > 1.0 {
-                factor *= 1.0 - f32::EPSILON;
-            }
-            lambert *= factor;
-            glossy *= factor;
-            // Below that it is the rounding of the sum, which nobody needs to hear about.
-            if sum > 1.000_01 {
-                warnings.push(format!(
-                    "material `{name}` would create energy: diffuse + glossy albedo reach {sum}; both are scaled by {factor:.4}"
-                ));
+        if material.transmission != Vec3::ZERO && material.eta.is_none() {
+            material.eta = Some(DEFAULT_ETA);
+            warnings.push(format!(
+                "material `{name}` transmits but states no index of refraction (Ni, eta); {DEFAULT_ETA} is used"
+            ));
+        }
+        self.load_maps(&mut material, textures, warnings);
+        if material.opacity == 0.0 {
+            warnings.push(format!("material `{name}` has opacity 0 (d): its surfaces cannot be seen"));
+        }
+        conserve_energy(&mut material, &textures.loaded, warnings);
+        material
+    }
+
+    /// Maps of numbers that are zero are not even looked for.
+    fn load_maps(&self, material: &mut Material, textures: &mut Textures, warnings: &mut Vec<String>) {
+        let wanted = |colour: Vec3, map: &MapDraft| map.file().filter(|_| colour != Vec3::ZERO).cloned();
+        let visible = |textures: &mut Textures, map: Option<MapFile>, warnings: &mut Vec<String>| {
+            let map = map?;
+            Some(textures.colour(&map, warnings).unwrap_or_else(|| textures.fallback()))
+        };
+        material.maps.lambert = visible(textures, wanted(material.lambert, &self.maps.diffuse), warnings);
+        material.maps.emission = visible(textures, wanted(material.emission, &self.maps.emission), warnings);
+        material.maps.ambient = if self.ambient.is_none() && self.maps.ambient.file().is_none() {
+            material.maps.lambert
+        } else {
+            visible(textures, wanted(material.ambient, &self.maps.ambient), warnings)
+        };
+        let glossy = wanted(material.glossy, &self.maps.glossy);
+        material.maps.glossy = glossy.and_then(|map| textures.colour(&map, warnings));
+        match &self.maps.opacity {
+            MapDraft::File(map) if material.opacity > 0.0 => material.maps.opacity = textures.opacity(map, warnings),
+            MapDraft::File(_) | MapDraft::Removed => {}
+            // Glass has its colour from transmission; alpha then is an exporter's other word for it.
+            MapDraft::Unstated if material.transmission != Vec3::ZERO => {}
+            MapDraft::Unstated => {
+                let Some(map) = material.maps.lambert else { return };
+                match textures.loaded[map as usize].alpha_range() {
+                    (_, 0.0) => warnings.push(format!(
+                        "the alpha of {}, a texture of material `{}`, is 0 everywhere; it is taken as opaque",
+                        textures.loaded[map as usize].name, self.name
+                    )),
+                    (least, _) if least < 1.0 => material.maps.opacity = Some(map),
+                    _ => {}
+                }
             }
         }
-        let exponent = self.exponent.unwrap_or(DEFAULT_EXPONENT);
-        let emission = self.emission.unwrap_or(Vec3::ZERO);
-        Material { name: name.clone(), ambient, lambert, glossy, exponent, emission, ..Material::default() }
+    }
+}
+
+/// Scales the albedos so that no channel reflects and transmits more than it receives.
+fn conserve_energy(material: &mut Material, textures: &[Texture], warnings: &mut Vec<String>) {
+    let largest = |map: Option<u32>| map.map_or(Vec3::ONE, |map| textures[map as usize].largest());
+    let (lambert_map, glossy_map) = (largest(material.maps.lambert), largest(material.maps.glossy));
+    let sum = |m: &Material| {
+        (m.lambert * lambert_map + m.glossy * glossy_map + m.reflection.max(m.transmission)).max_element()
+    };
+    let before = sum(material);
+    if before <= 1.0 {
+        return;
+    }
+    let original = material.clone();
+    let mut factor = 1.0 / before;
+    let scale = |material: &mut Material, factor: f32| {
+        material.lambert = original.lambert * factor;
+        material.glossy = original.glossy * factor;
+        material.reflection = original.reflection * factor;
+        material.transmission = original.transmission * factor;
+    };
+    scale(material, factor);
+    while sum(material) > 1.0 {
+        factor *= 1.0 - f32::EPSILON;
+        scale(material, factor);
+    }
+    // Below that it is the rounding of the sum, which nobody needs to hear about.
+    if before > 1.000_01 {
+        let (reflection, transmission) = (original.reflection.max_element(), original.transmission.max_element());
+        let parts = [
+            (original.lambert.max_element(), "diffuse"),
+            (original.glossy.max_element(), "glossy"),
+            (reflection.max(transmission), if transmission > reflection { "transmission" } else { "reflection" }),
+        ];
+        let parts: Vec<_> = parts.iter().filter(|(albedo, _)| *albedo > 0.0).map(|(_, name)| *name).collect();
+        let (verb, all) = if parts.len() == 1 { ("reaches", "it is") } else { ("reach", "all are") };
+        warnings.push(format!(
+            "material `{}` would create energy: {} albedo {verb} {before}; {all} scaled by {factor:.4}",
+            original.name,
+            parts.join(" + ")
+        ));
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn finish(draft: &Draft, warnings: &mut Vec<String>) -> Material {
+        draft.finish(&mut Textures::default(), warnings)
+    }
 
     #[test]
     fn albedos_never_exceed_one_after_scaling() {
@@ -89,19 +258,31 @@ mod tests {
             let draft = Draft {
                 diffuse: Some(Vec3::new(x, 0.3, x * 0.7)),
                 glossy: Some(Vec3::new(0.9, x * 1.9, 0.1)),
+                reflection: Some(Vec3::new(0.1, 0.0, x)),
+                transmission: Some(Vec3::new(0.2, x, 0.0)),
                 ..Draft::named("m")
             };
-            let material = draft.finish(&mut Vec::new());
-            assert!((material.lambert + material.glossy).max_element() <= 1.0, "{material:?}");
+            let m = finish(&draft, &mut Vec::new());
+            assert!((m.lambert + m.glossy + m.reflection.max(m.transmission)).max_element() <= 1.0, "{m:?}");
+            let ratio = m.lambert.x / x;
+            assert!((m.transmission.y - ratio * x).abs() < 1e-6, "all by the same factor: {m:?}");
         }
     }
 
     #[test]
     fn a_lamp_without_kd_is_black_and_an_empty_material_is_grey() {
         let mut warnings = Vec::new();
-        assert_eq!(Draft::named("m").finish(&mut warnings).lambert, DEFAULT_LAMBERT);
+        assert_eq!(finish(&Draft::named("m"), &mut warnings).lambert, DEFAULT_LAMBERT);
         let lamp = Draft { emission: Some(Vec3::ONE), ..Draft::named("lamp") };
-        assert_eq!(lamp.finish(&mut warnings).lambert, Vec3::ZERO);
+        assert_eq!(finish(&lamp, &mut warnings).lambert, Vec3::ZERO);
         assert!(warnings.is_empty());
+    }
+
+    #[test]
+    fn what_transmits_also_reflects_and_has_an_index_of_refraction() {
+        let mut warnings = Vec::new();
+        let glass = finish(&Draft { transmission: Some(Vec3::ONE), ..Draft::named("g") }, &mut warnings);
+        assert_eq!((glass.reflection, glass.eta, glass.lambert), (Vec3::ONE, Some(DEFAULT_ETA), Vec3::ZERO));
+        assert_eq!(warnings.len(), 1, "{warnings:?}");
     }
 }

@@ -4,23 +4,31 @@
 //! is what the files hold and what the GPU receives; the reference widens the same numbers to `f64`, so both tracers see
 //! the same scene to the last bit.
 
+mod darkness;
 mod environment;
+mod environment_file;
 mod estimator;
 mod filter;
+mod image_file;
 mod load;
 mod luminaire;
+mod map_options;
 mod material;
 mod mtl;
 mod obj;
+mod obj_faces;
 mod obj_text;
 mod preview;
 mod text;
+mod texture;
 mod toml;
+mod toml_settings;
+mod toml_tables;
 mod toml_values;
 
 pub use crate::sampling::Sampler;
 pub use environment::EnvironmentDistribution;
-pub use estimator::{AreaSampling, Directions, Estimator, Extinction, Integrator, LightSampling, PRESETS};
+pub use estimator::{AreaSampling, Directions, Estimator, EstimatorChanges, Extinction, Integrator, LightSampling, PRESETS};
 pub use load::load;
 pub(crate) use luminaire::widen;
 pub use luminaire::{EmissiveTriangle, LuminaireTable, SampledLuminaire};

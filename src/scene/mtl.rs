@@ -3,14 +3,18 @@
 //! Read here and not by `tobj`, which gives up a whole file at the first bad number: the geometry is worth more than that, so
 //! whatever is wrong in an MTL file is a warning with its line.
 
-use super::material::Draft;
+use super::map_options;
+use super::material::{DEFAULT_ETA, Draft, MapDraft};
 use super::text::{Tally, read_text};
 use crate::Result;
 use glam::Vec3;
 use std::path::Path;
 
-/// Reads an MTL file. What `Ka Kd Ks Ns Ke illum` say is modelled; `Ks` only for `illum` 2 and above (0 and 1 have no
-/// highlight) or without `illum`.
+/// A mirror-like `Ks` with at least this exponent, or with none, is a perfect mirror.
+const MIRROR_EXPONENT: f32 = 1000.0;
+
+/// Reads an MTL file: `Ka Kd Ks Ns Ke Ni Tf d Tr illum` and the maps of the colours and of `d`. What `illum` makes of them is a
+/// table in `scenes/README.md`.
 ///
 /// # Errors
 /// Only if the file cannot be read at all.
@@ -42,8 +46,13 @@ pub(super) fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Vec<Draft>
 struct Current {
     draft: Draft,
     illum: Option<u32>,
+    /// `d`, and what follows from `Tr`.
     dissolve: Option<f32>,
     transparency: Option<f32>,
+    /// `Tf`.
+    filter: Option<Vec3>,
+    /// `Ni`.
+    refraction: Option<f32>,
     /// Keywords of features that nothing models.
     ignored: Vec<String>,
 }
@@ -90,20 +99,28 @@ impl Reader<'_> {
             "Ke" => draft.emission = self.colour(keyword, &words).or(draft.emission),
             "Ns" => draft.exponent = self.number(keyword, &words, 0.0).or(draft.exponent),
             "d" => {
-                let words = words.strip_prefix(&["-halo"]).unwrap_or(&words);
-                current.dissolve = self.number(keyword, words, f32::NEG_INFINITY);
+                let words = words.strip_prefix(&["-halo"]).map_or(&words[..], |rest| {
+                    current.ignore("d -halo".into());
+                    rest
+                });
+                current.dissolve = self.number(keyword, words, f32::NEG_INFINITY).or(current.dissolve);
             }
-            "Tr" => current.transparency = self.number(keyword, &words, f32::NEG_INFINITY),
-            "illum" => match words.first().and_then(|word| word.parse().ok()) {
+            "Tr" => current.transparency = self.number(keyword, &words, f32::NEG_INFINITY).or(current.transparency),
+            "Tf" if matches!(words.first(), Some(&("xyz" | "spectral"))) => {
+                self.warn(&format!("Tf {} is not modelled, only Tf with three numbers; ignored", words[0]));
+            }
+            "Tf" => current.filter = self.colour(keyword, &words).or(current.filter),
+            // Some exporters write 0 where they know none.
+            "Ni" => current.refraction = self.number(keyword, &words, 0.0).filter(|ni| *ni > 0.0),
+            "illum" => match words.first().and_then(|word| word.parse().ok()).filter(|model| *model <= 10) {
                 Some(model) => current.illum = Some(model),
                 None => self.warn("illum needs a number from 0 to 10; ignored"),
             },
-            // Refraction, transmission filter and the like act only together with illum 4 and above or d, reported there.
-            "Ni" | "Tf" | "Km" | "Kt" | "sharpness" => {}
+            "Km" | "Kt" | "sharpness" => {}
             "Pr" | "Pm" | "Ps" | "Pc" | "Pcr" | "aniso" | "anisor" | "bump" | "disp" | "decal" | "refl" | "norm" => {
                 current.ignore(keyword.to_owned());
             }
-            map if map.to_ascii_lowercase().starts_with("map_") => current.ignore(keyword.to_owned()),
+            map if map.to_ascii_lowercase().starts_with("map_") => self.map(map, rest, &mut current),
             other => {
                 if self.unknown_keyword.is_empty() {
                     self.unknown_keyword = other.to_owned();
@@ -114,28 +131,41 @@ impl Reader<'_> {
         self.current = Some(current);
     }
 
+    /// Keeps a map, with its options.
+    fn map(&mut self, keyword: &str, rest: &str, current: &mut Current) {
+        let maps = &mut current.draft.maps;
+        let map = match keyword.to_ascii_lowercase().as_str() {
+            "map_ka" => &mut maps.ambient,
+            "map_kd" => &mut maps.diffuse,
+            "map_ks" => &mut maps.glossy,
+            "map_ke" => &mut maps.emission,
+            "map_d" => &mut maps.opacity,
+            _ => return current.ignore(keyword.to_owned()),
+        };
+        let folder = self.path.parent().unwrap_or(Path::new(""));
+        match map_options::parse(rest, folder, format!("{}:{}", self.path.display(), self.line)) {
+            Ok(statement) => {
+                *map = MapDraft::File(statement.map);
+                for option in statement.ignored {
+                    current.ignore(format!("{keyword} {option}"));
+                }
+            }
+            Err(message) => self.warn(&format!("{keyword}: {message}; ignored")),
+        }
+    }
+
     /// Finishes the current material.
     fn close(&mut self) {
         let Some(mut current) = self.current.take() else { return };
-        match current.illum {
-            Some(0 | 1) => current.draft.glossy = None,
-            Some(model @ 3..) => current.ignore(format!("illum {model} (mirror or glass)")),
-            Some(2) | None => {}
-        }
-        // `d` and `Tr` say the same in opposite ways, and exporters disagree on `Tr`: `d` wins where both are given.
-        match (current.dissolve, current.transparency) {
-            (Some(d), _) if d < 1.0 => current.ignore(format!("d {d} (transparency)")),
-            (None, Some(tr)) if tr > 0.0 => current.ignore(format!("Tr {tr} (transparency)")),
-            _ => {}
-        }
+        let at = format!("{}: material `{}`", self.path.display(), current.draft.name);
+        current.impulses(&at);
+        current.multipliers_of_maps(&at);
         let Current { mut draft, ignored, .. } = current;
         if !ignored.is_empty() {
-            let (file, name, ignored) = (self.path.display(), &draft.name, ignored.join(", "));
-            draft.not_modelled = Some(format!("{file}: material `{name}`: not modelled, ignored: {ignored}"));
+            draft.notes.insert(0, format!("{at}: not modelled, ignored: {}", ignored.join(", ")));
         }
         if self.drafts.iter().any(|other| other.name == draft.name) {
-            let (file, name) = (self.path.display(), &draft.name);
-            self.warnings.push(format!("{file}: material `{name}` is defined twice; the later one counts"));
+            self.warnings.push(format!("{at} is defined twice; the later one counts"));
             self.drafts.retain(|other| other.name != draft.name);
         }
         self.drafts.push(draft);
@@ -174,6 +204,65 @@ impl Current {
     fn ignore(&mut self, what: String) {
         if !self.ignored.contains(&what) {
             self.ignored.push(what);
+        }
+    }
+
+    /// What `illum` makes of `Ks`, `Ns`, `Ni`, `Tf`, `d` and `Tr`.
+    fn impulses(&mut self, at: &str) {
+        let draft = &mut self.draft;
+        let black = |colour: Option<Vec3>| colour.is_none_or(|colour| colour == Vec3::ZERO);
+        match self.illum {
+            Some(0 | 1) => draft.glossy = None,
+            Some(model @ (3 | 5 | 8)) if draft.exponent.is_none_or(|ns| ns >= MIRROR_EXPONENT) && !black(draft.glossy) => {
+                draft.reflection = draft.glossy.take();
+                draft.eta = self.refraction.filter(|ni| model == 5 && *ni > 1.0);
+                self.unused_map(|draft| &mut draft.maps.glossy, "map_Ks of a mirror");
+            }
+            Some(4 | 6 | 7 | 9) => {
+                draft.reflection = Some(if black(draft.glossy) { Vec3::ONE } else { draft.glossy.unwrap_or_default() });
+                draft.transmission =
+                    Some(if black(self.filter) { Vec3::ONE } else { self.filter.unwrap_or_default() });
+                draft.glossy = None;
+                draft.eta = self.refraction.or(Some(DEFAULT_ETA));
+                if self.refraction.is_none() {
+                    draft.notes.push(format!("{at} is glass without an index of refraction (Ni); {DEFAULT_ETA} is used"));
+                }
+                self.dissolve = None;
+                self.transparency = None;
+                self.unused_map(|draft| &mut draft.maps.glossy, "map_Ks of glass");
+                self.unused_map(|draft| &mut draft.maps.opacity, "map_d of glass");
+            }
+            _ => {}
+        }
+        if matches!(self.illum, Some(0 | 1)) {
+            self.draft.maps.glossy = MapDraft::Unstated;
+        }
+        // `d` and `Tr` say the same in opposite ways, and exporters disagree on `Tr`: `d` wins where both are given.
+        let opacity = self.dissolve.or(self.transparency.map(|tr| 1.0 - tr));
+        self.draft.opacity = opacity.map(|d| d.clamp(0.0, 1.0));
+    }
+
+    /// Drops a map that nothing uses, and says so.
+    fn unused_map(&mut self, map: fn(&mut Draft) -> &mut MapDraft, what: &str) {
+        if std::mem::take(map(&mut self.draft)).file().is_some() {
+            self.ignore(what.to_owned());
+        }
+    }
+
+    /// Exporters write 0 beside a map and mean 1.
+    fn multipliers_of_maps(&mut self, at: &str) {
+        let draft = &mut self.draft;
+        for (keyword, colour, map) in
+            [("Kd", &mut draft.diffuse, &draft.maps.diffuse), ("Ke", &mut draft.emission, &draft.maps.emission)]
+        {
+            if *colour == Some(Vec3::ZERO) && map.file().is_some() {
+                *colour = Some(Vec3::ONE);
+                draft.notes.push(format!("{at}: {keyword} is black beside a map_{keyword}; 1 is used"));
+            }
+        }
+        if draft.opacity == Some(0.0) && draft.maps.opacity.file().is_some() {
+            draft.opacity = Some(1.0);
+            draft.notes.push(format!("{at}: d is 0 beside a map_d; 1 is used"));
         }
     }
 }

@@ -1,10 +1,10 @@
-//! A mesh from an OBJ file, by `tobj`.
+//! A mesh from an OBJ file, by `tobj`, which makes one vertex of each triple of position, texture coordinate and normal.
 
 use super::obj_text::{self, ObjText};
 use super::text::read_text;
 use super::{Mesh, Triangle};
 use crate::{Error, Result};
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 use std::io::Read;
 use std::path::Path;
 
@@ -17,16 +17,20 @@ pub(super) struct Obj {
     pub materials: Vec<(String, usize)>,
     /// What follows `mtllib`, with its line.
     pub libraries: Vec<(String, usize)>,
+    /// Materials, numbered like [`Triangle::material`], of faces that lack a texture coordinate, with the line of the first.
+    pub without_uv: Vec<(usize, usize)>,
     /// What was skipped or dropped.
     pub warnings: Vec<String>,
 }
 
-/// Reads an OBJ file: all its groups in one mesh, polygons split into fans, zero-area triangles dropped.
+/// Reads an OBJ file: all its groups in one mesh, polygons split into fans, zero-area triangles dropped. `smooth` makes vertex
+/// normals where the file has none: faces share them that differ by less than so many degrees.
 ///
 /// # Errors
 /// If the file cannot be read, a line of it is wrong, or no triangle is left.
-pub(super) fn read(path: &Path) -> Result<Obj> {
-    let ObjText { vertices, faces, materials, libraries, mut warnings } = obj_text::normalise(path, &read_text(path)?)?;
+pub(super) fn read(path: &Path, smooth: Option<f32>) -> Result<Obj> {
+    let ObjText { vertices, faces, materials, libraries, without_uv, mut warnings } =
+        obj_text::normalise(path, &read_text(path)?, smooth)?;
     let mut text = b"mtllib names\n".chain(vertices.as_bytes()).chain(faces.as_bytes());
     let names = |_: &Path| {
         let numbered = |index: usize| tobj::Material { name: index.to_string(), ..Default::default() };
@@ -53,7 +57,7 @@ pub(super) fn read(path: &Path) -> Result<Obj> {
     if mesh.normals.iter().all(|normal| *normal == Vec3::ZERO) {
         mesh.normals = Vec::new();
     }
-    Ok(Obj { mesh, materials, libraries, warnings })
+    Ok(Obj { mesh, materials, libraries, without_uv, warnings })
 }
 
 /// The last part of a path.
@@ -65,6 +69,7 @@ pub(super) fn file_name(path: &Path) -> String {
 fn append(mesh: &mut Mesh, model: &tobj::Mesh) -> usize {
     let base = mesh.positions.len() as u32;
     mesh.positions.extend(model.positions.chunks_exact(3).map(Vec3::from_slice));
+    mesh.uvs.extend(model.texcoords.chunks_exact(2).map(Vec2::from_slice));
     mesh.normals.extend(model.normals.chunks_exact(3).map(|n| unit_or_zero(Vec3::from_slice(n))));
     let material = model.material_id.map_or(0, |index| index as u32 + 1);
     let mut dropped = 0;

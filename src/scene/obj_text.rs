@@ -1,11 +1,13 @@
 //! The text of an OBJ file, checked line by line and rewritten to what `tobj` reads without a quirk.
 //!
 //! `tobj` stops a whole file without naming the line, mixes up the normals of a mesh in which only some corners have one,
-//! takes `l` lines for faces, and wants every vertex coloured if one is. So each line is checked here first, and `tobj` receives plain `v`, `vn`,
-//! `usemtl` and `f` lines with absolute, valid indices.
+//! takes `l` lines for faces, and wants every vertex coloured if one is. So each line is checked here first, and `tobj` receives
+//! plain `v`, `vt`, `vn`, `usemtl` and `f` lines with absolute, valid indices.
 
+use super::obj_faces::Faces;
 use super::text::Tally;
 use crate::{Error, Result};
+use glam::Vec3;
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::fmt::Write;
@@ -14,10 +16,13 @@ use std::path::Path;
 /// What an OBJ file says, without its errors.
 #[derive(Debug, Default)]
 pub(super) struct ObjText {
-    /// `v` and `vn` lines.
+    /// `v`, `vt` and `vn` lines.
     pub vertices: String,
     /// `f` and `usemtl` lines; `usemtl` carries an index into `materials`.
     pub faces: String,
+    /// Materials (0 for none, else 1 + an index into `materials`) of faces that lack a texture coordinate, with the line of the
+    /// first.
+    pub without_uv: Vec<(usize, usize)>,
     /// Material names in the order of their first use, with the line of it.
     pub materials: Vec<(String, usize)>,
     /// What follows `mtllib`, with its line.
@@ -29,11 +34,11 @@ pub(super) struct ObjText {
 /// What an index can point to, in the order of `v/vt/vn`.
 const KINDS: [&str; 3] = ["vertex", "texture coordinate", "normal"];
 
-/// Checks and rewrites an OBJ file.
+/// Checks and rewrites an OBJ file. `smooth` (degrees) replaces smoothing groups where no face has normals.
 ///
 /// # Errors
 /// [`Error::Parse`] for the first line that holds a bad number, a vertex that is not finite, or a bad index.
-pub(super) fn normalise(path: &Path, text: &str) -> Result<ObjText> {
+pub(super) fn normalise(path: &Path, text: &str, smooth: Option<f32>) -> Result<ObjText> {
     let mut totals = [0; 3];
     for (_, line) in logical_lines(text) {
         if let Some(kind) = line.split_ascii_whitespace().next().and_then(element_kind) {
@@ -44,7 +49,7 @@ pub(super) fn normalise(path: &Path, text: &str) -> Result<ObjText> {
     for (number, line) in logical_lines(text) {
         scan.line(number, &line)?;
     }
-    Ok(scan.finish())
+    Ok(scan.finish(smooth))
 }
 
 /// Lines with their number, where a backslash at the end joins the next one.
@@ -87,8 +92,12 @@ struct Scan<'a> {
     totals: [usize; 3],
     /// How many precede the current line.
     counts: [usize; 3],
-    /// Vertex and normal of each corner of the current face; 0 for no normal.
-    corners: Vec<(usize, usize)>,
+    /// Positions, for normals that are made from the faces.
+    positions: Vec<Vec3>,
+    faces: Faces,
+    /// 0 for none, else 1 + an index into `out.materials`.
+    material: usize,
+    smoothing_group: u32,
     by_name: HashMap<String, usize>,
     out: ObjText,
     short_faces: Tally,
@@ -96,6 +105,8 @@ struct Scan<'a> {
     unknown_keyword: String,
     dangling: [Tally; 3],
     bad_normals: Tally,
+    bad_uvs: Tally,
+    bad_groups: Tally,
 }
 
 impl<'a> Scan<'a> {
@@ -104,7 +115,10 @@ impl<'a> Scan<'a> {
             path,
             totals,
             counts: [0; 3],
-            corners: Vec::new(),
+            positions: Vec::new(),
+            faces: Faces::default(),
+            material: 0,
+            smoothing_group: 0,
             by_name: HashMap::new(),
             out: ObjText::default(),
             short_faces: Tally::default(),
@@ -112,6 +126,8 @@ impl<'a> Scan<'a> {
             unknown_keyword: String::new(),
             dangling: Default::default(),
             bad_normals: Tally::default(),
+            bad_uvs: Tally::default(),
+            bad_groups: Tally::default(),
         }
     }
 
@@ -130,7 +146,8 @@ impl<'a> Scan<'a> {
             "f" => self.face(number, words)?,
             "usemtl" => self.material(number, rest),
             "mtllib" => self.out.libraries.push((rest.to_owned(), number)),
-            "o" | "g" | "s" | "l" | "p" => {}
+            "s" => self.smoothing(number, rest),
+            "o" | "g" | "l" | "p" => {}
             comment if comment.starts_with('#') => {}
             other => {
                 if self.unknown_keyword.is_empty() {
@@ -177,9 +194,11 @@ impl<'a> Scan<'a> {
             *number = self.number(line, word)?;
         }
         let [x, y, z, w] = numbers;
-        if ![x / w, y / w, z / w].iter().all(|c| c.is_finite()) {
+        let position = Vec3::new(x / w, y / w, z / w);
+        if !position.is_finite() {
             return self.error(line, format!("the vertex {} is not finite", kept[..used].join(" ")));
         }
+        self.positions.push(position);
         self.out.vertices.push_str("v ");
         for word in &kept[..used] {
             self.out.vertices.push_str(word);
@@ -190,14 +209,23 @@ impl<'a> Scan<'a> {
     }
 
     fn texture_coordinate<'w>(&mut self, line: usize, words: impl Iterator<Item = &'w str>) -> Result<()> {
+        let mut uv = [0.0; 2];
         let mut count = 0;
         for word in words {
-            self.number(line, word)?;
+            let number = self.number(line, word)?;
+            if let Some(slot) = uv.get_mut(count) {
+                *slot = number;
+            }
             count += 1;
         }
         if count == 0 {
             return self.error(line, "a texture coordinate needs 1 to 3 numbers, found none".into());
         }
+        if !uv.iter().all(|n| n.is_finite()) {
+            self.bad_uvs.add(line);
+            uv = [0.0; 2];
+        }
+        writeln!(self.out.vertices, "vt {} {}", uv[0], uv[1]).expect("writing to a string");
         Ok(())
     }
 
@@ -223,17 +251,29 @@ impl<'a> Scan<'a> {
         Ok(())
     }
 
+    fn smoothing(&mut self, line: usize, rest: &str) {
+        let word = rest.split_ascii_whitespace().next().unwrap_or("off");
+        self.smoothing_group = match word.to_ascii_lowercase().as_str() {
+            "off" => 0,
+            "on" => 1,
+            number => number.parse().unwrap_or_else(|_| {
+                self.bad_groups.add(line);
+                0
+            }),
+        };
+    }
+
     fn material(&mut self, line: usize, name: &str) {
         let next = self.out.materials.len();
         let index = *self.by_name.entry(name.to_owned()).or_insert(next);
         if index == next {
             self.out.materials.push((name.to_owned(), line));
         }
-        writeln!(self.out.faces, "usemtl {index}").expect("writing to a string");
+        self.material = index + 1;
     }
 
     fn face<'w>(&mut self, line: usize, words: impl Iterator<Item = &'w str>) -> Result<()> {
-        self.corners.clear();
+        let first = self.faces.corners.len();
         for word in words {
             let mut indices = [0; 3];
             let mut parts = word.split('/');
@@ -247,23 +287,18 @@ impl<'a> Scan<'a> {
             if parts.next().is_some() {
                 return self.error(line, format!("`{word}` is not a corner; expected v, v/vt, v//vn or v/vt/vn"));
             }
-            self.corners.push((indices[0], indices[2]));
+            self.faces.corners.push(indices.map(|index| index as u32));
         }
-        if self.corners.len() < 3 {
+        if self.faces.corners.len() < first + 3 {
+            self.faces.corners.truncate(first);
             self.short_faces.add(line);
             return Ok(());
         }
-        self.out.faces.push('f');
-        for &(vertex, normal) in &self.corners {
-            // A corner without a normal in a file that has some refers to the zero normal that `finish` appends.
-            let written = match (self.totals[2], normal) {
-                (0, _) => write!(self.out.faces, " {vertex}"),
-                (total, 0) => write!(self.out.faces, " {vertex}//{}", total + 1),
-                (_, normal) => write!(self.out.faces, " {vertex}//{normal}"),
-            };
-            written.expect("writing to a string");
+        let lacks_uv = self.faces.corners[first..].iter().any(|[_, uv, _]| *uv == 0);
+        if lacks_uv && !self.out.without_uv.iter().any(|(material, _)| *material == self.material) {
+            self.out.without_uv.push((self.material, line));
         }
-        self.out.faces.push('\n');
+        self.faces.end_face(self.material as u32, self.smoothing_group);
         Ok(())
     }
 
@@ -298,17 +333,30 @@ impl<'a> Scan<'a> {
         Ok(absolute as usize)
     }
 
-    fn finish(mut self) -> ObjText {
-        if self.totals[2] > 0 {
-            self.out.vertices.push_str("vn 0 0 0\n");
+    fn finish(mut self, smooth: Option<f32>) -> ObjText {
+        // What corners without a texture coordinate or a normal refer to, in a file that has some.
+        if self.totals[1] > 0 {
+            self.out.vertices.push_str("vt 0 0\n");
         }
+        let has_normals = self.faces.corners.iter().any(|[_, _, normal]| *normal > 0);
+        let made = match smooth {
+            Some(degrees) if !has_normals => self.faces.normals_by_angle(&self.positions, degrees),
+            _ => self.faces.normals_by_group(&self.positions),
+        };
+        self.out.faces = self.faces.text(self.totals, &made, &mut self.out.vertices);
         let warnings = &mut self.out.warnings;
+        if smooth.is_some() && has_normals {
+            let path = self.path.display();
+            warnings.push(format!("{path}: `smooth` is ignored: the file has vertex normals of its own (vn)"));
+        }
         self.short_faces.warn(self.path, "a face with fewer than 3 corners is skipped", warnings);
         let unknown = format!("a line with the keyword `{}`, which is not modelled, is skipped", self.unknown_keyword);
         self.unknown.warn(self.path, &unknown, warnings);
         self.dangling[1].warn(self.path, "a texture coordinate index, but the file has none; ignored", warnings);
-        self.dangling[2].warn(self.path, "a normal index, but the file has no normals; shaded flat", warnings);
+        self.dangling[2].warn(self.path, "a normal index, but the file has no normals; ignored", warnings);
         self.bad_normals.warn(self.path, "a normal that is not finite is ignored", warnings);
+        self.bad_uvs.warn(self.path, "a texture coordinate that is not finite counts as 0", warnings);
+        self.bad_groups.warn(self.path, "a smoothing group that is no number counts as off", warnings);
         self.out
     }
 }

@@ -25,18 +25,18 @@ pub(super) const FILM: FilmSettings = FilmSettings { width: 512, height: 512, fi
 /// Loads a bare OBJ.
 pub(super) fn load(path: &Path) -> Result<Scene> {
     let mut loader = Loader::new(Vec::new());
-    let mesh = loader.mesh(path)?;
+    let mesh = loader.mesh(path, None)?;
     let object = Object { name: obj::file_name(path), mesh, object_to_world: Affine3A::IDENTITY, material: None };
     let objects = vec![object];
-    let materials = loader.finish_materials(&objects);
+    let (materials, textures) = loader.finish_materials(&objects);
     let mut scene = Scene {
-        textures: Vec::new(),
-        environment: None,
         path: path.to_owned(),
         meshes: loader.meshes,
         objects,
         materials,
+        textures,
         luminaires: Vec::new(),
+        environment: None,
         sensor: Sensor {
             position: Vec3::Z,
             target: Vec3::ZERO,
@@ -50,7 +50,7 @@ pub(super) fn load(path: &Path) -> Result<Scene> {
         warnings: loader.warnings,
     };
     scene.sensor = framing_sensor(&scene);
-    if !emits(&scene) {
+    if !scene.triangles_emit() {
         scene.luminaires.push(Luminaire::Infinite {
             direction: KEY_DIRECTION.normalize().as_vec3(),
             irradiance: Vec3::splat(KEY_IRRADIANCE),
@@ -63,14 +63,6 @@ pub(super) fn load(path: &Path) -> Result<Scene> {
         ));
     }
     Ok(scene)
-}
-
-/// Does any triangle emit?
-pub(super) fn emits(scene: &Scene) -> bool {
-    scene.objects.iter().any(|object| {
-        let mesh = &scene.meshes[object.mesh as usize];
-        mesh.triangles.iter().any(|triangle| scene.material_of(object, triangle).emission != Vec3::ZERO)
-    })
 }
 
 /// A camera in front of the scene, a little from above and from the right, that has all of it in the picture.

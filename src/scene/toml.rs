@@ -1,124 +1,18 @@
 //! Scene files in TOML; `scenes/README.md` describes the format.
 
 use super::load::Loader;
-use super::material::Draft;
+use super::material::{Draft, DraftMaps, MapDraft};
 use super::text::line_and_column;
-use super::toml_values::{Colour, Exponent, Exposure, Finite, Fov, Pixels, Samples, Triple};
-use super::{
-    Estimator, FilmSettings, Filter, Integrator, Luminaire, Object, Projection, RenderSettings, Scene, Sensor, obj,
-    preview,
-};
+use super::texture::MapFile;
+use super::toml_tables::{LuminaireKind, LuminaireTable, MaterialTable, ObjectTable, Scale, SceneFile};
+use super::toml_values::Triple;
+use super::{Luminaire, Object, Projection, RenderSettings, Scene, Sensor, obj, preview};
 use crate::{Error, Result};
 use ::toml::Spanned;
 use glam::{Affine3A, DAffine3, DMat3, DQuat, DVec3, Vec3};
-use serde::Deserialize;
 use std::collections::HashSet;
 use std::ops::Range;
-use std::path::Path;
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct SceneFile {
-    film: Option<Spanned<FilmTable>>,
-    sensor: Option<Spanned<SensorTable>>,
-    integrator: Option<IntegratorTable>,
-    #[serde(default)]
-    render: RenderTable,
-    #[serde(default)]
-    object: Vec<Spanned<ObjectTable>>,
-    #[serde(default)]
-    material: Vec<MaterialTable>,
-    #[serde(default)]
-    luminaire: Vec<Spanned<LuminaireTable>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct FilmTable {
-    width: Option<Pixels>,
-    height: Option<Pixels>,
-    #[serde(default)]
-    filter: Filter,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct SensorTable {
-    position: Triple,
-    target: Triple,
-    up: Option<Triple>,
-    fov: Fov,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct IntegratorTable {
-    kind: IntegratorKind,
-    max_bounces: Option<Spanned<u32>>,
-    ambient: Option<Spanned<Colour>>,
-}
-
-#[derive(Deserialize, Clone, Copy)]
-#[serde(rename_all = "lowercase")]
-enum IntegratorKind {
-    Path,
-    Simple,
-}
-
-#[derive(Deserialize, Default)]
-#[serde(deny_unknown_fields)]
-struct RenderTable {
-    spp: Option<Samples>,
-    seed: Option<u32>,
-    exposure: Option<Exposure>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct ObjectTable {
-    mesh: Spanned<String>,
-    name: Option<String>,
-    material: Option<Spanned<String>>,
-    translate: Option<Triple>,
-    rotate: Option<Triple>,
-    scale: Option<Scale>,
-    matrix: Option<[[Finite; 4]; 3]>,
-}
-
-#[derive(Deserialize)]
-#[serde(untagged, expecting = "expected a number or three numbers [x, y, z], all finite")]
-enum Scale {
-    Even(Finite),
-    Uneven(Triple),
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct MaterialTable {
-    name: Spanned<String>,
-    ambient: Option<Colour>,
-    diffuse: Option<Colour>,
-    glossy: Option<Colour>,
-    exponent: Option<Exponent>,
-    emission: Option<Colour>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct LuminaireTable {
-    kind: LuminaireKind,
-    position: Option<Triple>,
-    intensity: Option<Colour>,
-    direction: Option<Triple>,
-    irradiance: Option<Colour>,
-}
-
-#[derive(Deserialize, Clone, Copy)]
-#[serde(rename_all = "lowercase")]
-enum LuminaireKind {
-    Point,
-    Infinite,
-}
+use std::path::{Path, PathBuf};
 
 /// Loads a scene file.
 pub(super) fn load(path: &Path) -> Result<Scene> {
@@ -134,24 +28,35 @@ pub(super) fn load(path: &Path) -> Result<Scene> {
 }
 
 /// A scene file being turned into a [`Scene`].
-struct File<'a> {
+pub(super) struct File<'a> {
     path: &'a Path,
     text: &'a str,
 }
 
 impl File<'_> {
-    fn error(&self, span: Range<usize>, message: impl Into<String>) -> Error {
+    /// An error at a place of the scene file.
+    pub(super) fn error(&self, span: Range<usize>, message: impl Into<String>) -> Error {
         let (line, column) = line_and_column(self.text, span.start);
         Error::Parse { path: self.path.to_owned(), line, column, message: message.into() }
     }
 
-    fn warning(&self, message: &str) -> String {
+    /// A warning about the scene file.
+    pub(super) fn warning(&self, message: &str) -> String {
         format!("{}: {message}", self.path.display())
+    }
+
+    /// A file that the scene file names.
+    pub(super) fn beside(&self, name: &str) -> PathBuf {
+        self.folder().join(name)
+    }
+
+    fn folder(&self) -> &Path {
+        self.path.parent().unwrap_or(Path::new(""))
     }
 
     fn build(&self, file: SceneFile) -> Result<Scene> {
         let film = self.film(file.film)?;
-        let integrator = self.integrator(file.integrator)?;
+        let integrator = self.integrator(&file.integrator)?;
         let mut luminaires = Vec::new();
         for table in file.luminaire {
             luminaires.push(self.luminaire(&table)?);
@@ -170,16 +75,21 @@ impl File<'_> {
             spp: file.render.spp.map_or(defaults.spp, |spp| spp.0),
             seed: file.render.seed.unwrap_or(defaults.seed),
             exposure: file.render.exposure.map_or(defaults.exposure, |exposure| exposure.0),
-            sampler: defaults.sampler,
+            sampler: file.render.sampler.unwrap_or(defaults.sampler),
         };
+        let environment = match &file.environment {
+            None => None,
+            Some(table) => self.environment(table, &mut loader.warnings)?,
+        };
+        let (materials, textures) = loader.finish_materials(&objects);
         let mut scene = Scene {
-            textures: Vec::new(),
-            environment: None,
             path: self.path.to_owned(),
-            materials: loader.finish_materials(&objects),
             meshes: loader.meshes,
             objects,
+            materials,
+            textures,
             luminaires,
+            environment,
             sensor: Sensor {
                 position: Vec3::Z,
                 target: Vec3::ZERO,
@@ -197,68 +107,8 @@ impl File<'_> {
             scene.warnings.push(self.warning("no [sensor]; the camera is placed to frame the scene"));
             sensor
         });
-        let lit = matches!(integrator, Integrator::Simple { ambient } if ambient != Vec3::ZERO);
-        if !lit && scene.luminaires.is_empty() && !preview::emits(&scene) {
-            scene.warnings.push(self.warning("no [[luminaire]] and no material emits; the picture will be black"));
-        }
+        scene.warnings.extend(scene.dark_because());
         Ok(scene)
-    }
-
-    fn film(&self, table: Option<Spanned<FilmTable>>) -> Result<FilmSettings> {
-        let Some(table) = table else { return Ok(preview::FILM) };
-        let span = table.span();
-        let table = table.into_inner();
-        let width = table.width.map_or(preview::FILM.width, |pixels| pixels.0);
-        let height = table.height.map_or(preview::FILM.height, |pixels| pixels.0);
-        if u64::from(width) * u64::from(height) > u64::from(u32::MAX) {
-            return Err(self.error(span, format!("a film of {width} x {height} has more than 2^32 - 1 pixels")));
-        }
-        Ok(FilmSettings { width, height, filter: table.filter, filter_radius: table.filter.default_radius() })
-    }
-
-    fn sensor(&self, table: &Spanned<SensorTable>) -> Result<Sensor> {
-        let SensorTable { position, target, up, fov } = table.get_ref();
-        let sensor = Sensor {
-            position: position.0,
-            target: target.0,
-            up: up.map_or(Vec3::Y, |up| up.0),
-            projection: Projection::Perspective { fov: fov.0 },
-            lens: None,
-        };
-        let view = sensor.target.as_dvec3() - sensor.position.as_dvec3();
-        let up = sensor.up.as_dvec3();
-        let wrong = if view == DVec3::ZERO {
-            "position and target of the sensor are the same point"
-        } else if up == DVec3::ZERO {
-            "the sensor's up is the zero vector"
-        } else if up.normalize().cross(view.normalize()).length() < 1e-6 {
-            "the sensor's up is parallel to its line of sight; choose another up"
-        } else {
-            return Ok(sensor);
-        };
-        Err(self.error(table.span(), wrong))
-    }
-
-    fn integrator(&self, table: Option<IntegratorTable>) -> Result<Integrator> {
-        let Some(IntegratorTable { kind, max_bounces, ambient }) = table else {
-            return Ok(Integrator::Path(Estimator::default()));
-        };
-        match (kind, max_bounces, ambient) {
-            (IntegratorKind::Path, _, Some(ambient)) => {
-                Err(self.error(ambient.span(), "`ambient` belongs to kind = \"simple\"; the path integrator has none"))
-            }
-            (IntegratorKind::Simple, Some(bounces), _) => Err(self.error(
-                bounces.span(),
-                "`max_bounces` belongs to kind = \"path\"; the simple ray tracer does not bounce",
-            )),
-            (IntegratorKind::Path, bounces, None) => Ok(Integrator::Path(Estimator {
-                max_bounces: bounces.map(Spanned::into_inner),
-                ..Estimator::default()
-            })),
-            (IntegratorKind::Simple, None, ambient) => {
-                Ok(Integrator::Simple { ambient: ambient.map_or(Vec3::ZERO, |ambient| ambient.into_inner().0) })
-            }
-        }
     }
 
     fn luminaire(&self, table: &Spanned<LuminaireTable>) -> Result<Luminaire> {
@@ -295,21 +145,46 @@ impl File<'_> {
                 glossy: table.glossy.map(|colour| colour.0),
                 exponent: table.exponent.map(|exponent| exponent.0),
                 emission: table.emission.map(|colour| colour.0),
-                not_modelled: None,
+                reflection: table.reflection.map(|colour| colour.0),
+                transmission: table.transmission.map(|colour| colour.0),
+                eta: table.eta.map(|eta| eta.0),
+                impulse_probability: table.impulse_probability.map(|probability| probability.0),
+                opacity: table.opacity.map(|opacity| opacity.0),
+                maps: DraftMaps {
+                    ambient: self.map(&table.ambient_map)?,
+                    diffuse: self.map(&table.diffuse_map)?,
+                    glossy: self.map(&table.glossy_map)?,
+                    emission: self.map(&table.emission_map)?,
+                    opacity: self.map(&table.opacity_map)?,
+                },
+                notes: Vec::new(),
             })
         };
         tables.iter().map(draft).collect()
     }
 
+    /// A map; the empty name removes what an MTL file says.
+    fn map(&self, name: &Option<Spanned<String>>) -> Result<MapDraft> {
+        let Some(name) = name else { return Ok(MapDraft::Unstated) };
+        if name.get_ref().is_empty() {
+            return Ok(MapDraft::Removed);
+        }
+        let path = self.beside(name.get_ref());
+        // What is wrong with the image itself is a warning, as it is in an MTL file.
+        std::fs::metadata(&path).map_err(|error| self.error(name.span(), Error::read(&path, error).to_string()))?;
+        let at = format!("{}:{}", self.path.display(), line_and_column(self.text, name.span().start).0);
+        Ok(MapDraft::File(MapFile::plain(vec![name.get_ref().clone()], self.folder(), at)))
+    }
+
     fn object(&self, table: &Spanned<ObjectTable>, loader: &mut Loader) -> Result<Object> {
         let object = table.get_ref();
         let object_to_world = self.transform(table)?;
-        let mesh_path = self.path.parent().unwrap_or(Path::new("")).join(object.mesh.get_ref());
+        let mesh_path = self.beside(object.mesh.get_ref());
         if !mesh_path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("obj")) {
             let message = format!("`{}`: a mesh has to be an .obj file", object.mesh.get_ref());
             return Err(self.error(object.mesh.span(), message));
         }
-        let mesh = loader.mesh(&mesh_path).map_err(|error| match error {
+        let mesh = loader.mesh(&mesh_path, object.smooth.map(|smooth| smooth.0)).map_err(|error| match error {
             // Where the file is named helps more than where it is not.
             Error::Read { .. } => self.error(object.mesh.span(), error.to_string()),
             other => other,

@@ -8,6 +8,11 @@ const LARGEST_FILM: i64 = 65_536;
 /// Most stops of exposure, up or down: more would leave the range of `f32`.
 const LARGEST_EXPOSURE: f64 = 64.0;
 
+/// Beyond this a filter is a blur.
+const LARGEST_FILTER_RADIUS: f32 = 64.0;
+/// More blades are a circle.
+const MOST_BLADES: i64 = 64;
+
 type Checked<T> = std::result::Result<T, &'static str>;
 
 /// A finite number.
@@ -39,6 +44,31 @@ pub(super) struct Exponent(pub f32);
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(try_from = "f64")]
 pub(super) struct Exposure(pub f32);
+
+/// A finite number greater than 0.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(try_from = "f64")]
+pub(super) struct Positive(pub f32);
+
+/// A number in [0, 1].
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(try_from = "f64")]
+pub(super) struct Unit(pub f32);
+
+/// Degrees in [0, 180].
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(try_from = "f64")]
+pub(super) struct Angle(pub f32);
+
+/// Radius of a pixel filter in pixels.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(try_from = "f64")]
+pub(super) struct FilterRadius(pub f32);
+
+/// Corners of an aperture.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(try_from = "i64")]
+pub(super) struct Blades(pub u32);
 
 /// Width or height of a film.
 #[derive(Debug, Clone, Copy, Deserialize)]
@@ -91,6 +121,46 @@ impl TryFrom<f64> for Exponent {
         (exponent.is_finite() && exponent >= 0.0)
             .then_some(Exponent(exponent))
             .ok_or("expected a finite number of at least 0")
+    }
+}
+
+impl TryFrom<f64> for Positive {
+    type Error = &'static str;
+    fn try_from(number: f64) -> Checked<Self> {
+        let number = number as f32;
+        (number.is_finite() && number > 0.0).then_some(Positive(number)).ok_or("expected a finite number above 0")
+    }
+}
+
+impl TryFrom<f64> for Unit {
+    type Error = &'static str;
+    fn try_from(number: f64) -> Checked<Self> {
+        (0.0..=1.0).contains(&number).then_some(Unit(number as f32)).ok_or("expected a number from 0 to 1")
+    }
+}
+
+impl TryFrom<f64> for Angle {
+    type Error = &'static str;
+    fn try_from(degrees: f64) -> Checked<Self> {
+        (0.0..=180.0).contains(&degrees).then_some(Angle(degrees as f32)).ok_or("expected degrees from 0 to 180")
+    }
+}
+
+impl TryFrom<f64> for FilterRadius {
+    type Error = &'static str;
+    fn try_from(pixels: f64) -> Checked<Self> {
+        let radius = pixels as f32;
+        (radius > 0.0 && radius <= LARGEST_FILTER_RADIUS)
+            .then_some(FilterRadius(radius))
+            .ok_or("expected pixels above 0, at most 64")
+    }
+}
+
+impl TryFrom<i64> for Blades {
+    type Error = &'static str;
+    fn try_from(blades: i64) -> Checked<Self> {
+        let valid = blades == 0 || (3..=MOST_BLADES).contains(&blades);
+        valid.then_some(Blades(blades as u32)).ok_or("expected 3 to 64 blades, or 0 for a round aperture")
     }
 }
 

@@ -1,0 +1,44 @@
+//! The image of an environment.
+
+use super::EnvironmentImage;
+use super::image_file::ImageFile;
+use glam::Vec3;
+use std::path::Path;
+
+/// Reads a latitude-longitude image; none if it is black. What is negative or not finite is replaced, with a warning.
+///
+/// # Errors
+/// In words that can follow the file's name.
+pub(super) fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Option<EnvironmentImage>, String> {
+    let image = ImageFile::open(path)?;
+    let (mut odd, mut infinite) = (0u64, 0u64);
+    let mut texels: Vec<Vec3> = (0..image.len())
+        .map(|texel| {
+            let [r, g, b, _] = image.linear(texel);
+            let colour = Vec3::new(r, g, b);
+            odd += u64::from(colour.is_nan() || colour.min_element() < 0.0);
+            // In this order a NaN becomes 0.
+            colour.max(Vec3::ZERO).map(|channel| if channel.is_nan() { 0.0 } else { channel })
+        })
+        .collect();
+    if odd > 0 {
+        warnings.push(format!("{}: {odd} texels are negative or NaN; 0 is used there", path.display()));
+    }
+    let largest = texels.iter().flat_map(|t| t.to_array()).filter(|c| c.is_finite()).fold(0.0, f32::max);
+    for texel in texels.iter_mut().filter(|texel| !texel.is_finite()) {
+        infinite += 1;
+        *texel = texel.min(Vec3::splat(largest.max(1.0)));
+    }
+    if infinite > 0 {
+        warnings.push(format!(
+            "{}: {infinite} texels are infinite; the largest finite value is used there",
+            path.display()
+        ));
+    }
+    if texels.iter().all(|texel| *texel == Vec3::ZERO) {
+        warnings.push(format!("{}: the environment is black; there is none", path.display()));
+        return Ok(None);
+    }
+    let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+    Ok(Some(EnvironmentImage { name, width: image.width, height: image.height, texels }))
+}

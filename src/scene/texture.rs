@@ -1,0 +1,234 @@
+//! Textures: which file a map means, what its options change, and the texels that both tracers see.
+
+use super::Texture;
+use super::image_file::ImageFile;
+use half::f16;
+use std::collections::{HashMap, HashSet};
+use std::path::{Path, PathBuf};
+
+/// Where a material's map is and how it is to be read.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct MapFile {
+    /// The name as it is written, and where that does not exist, what else it may mean.
+    pub names: Vec<String>,
+    /// The folder that the names are relative to.
+    pub folder: PathBuf,
+    /// `FILE:LINE` of the statement, for warnings.
+    pub at: String,
+    /// `-clamp on`.
+    pub clamp: bool,
+    /// `-mm`: a texel `t` counts as `base + gain * t`.
+    pub base: f32,
+    /// See `base`.
+    pub gain: f32,
+    /// `-imfchan`, for scalars.
+    pub channel: Channel,
+}
+
+/// Which channel of an image is a scalar.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub(super) enum Channel {
+    /// Alpha, if some of it is not opaque, else luminance.
+    #[default]
+    Any,
+    /// Red, green, blue or alpha, by index.
+    One(u8),
+    /// Luminance.
+    Luminance,
+}
+
+/// What decides whether two maps are one texture.
+#[derive(Debug, PartialEq, Eq, Hash)]
+struct Key {
+    file: PathBuf,
+    clamp: bool,
+    base: u32,
+    gain: u32,
+    /// None: colours, with the image's own alpha.
+    scalar: Option<Channel>,
+}
+
+/// The textures loaded so far; one file with the same options is loaded once.
+#[derive(Debug, Default)]
+pub(super) struct Textures {
+    /// What was loaded.
+    pub loaded: Vec<Texture>,
+    by_key: HashMap<Key, Option<u32>>,
+    fallback: Option<u32>,
+    said: HashSet<String>,
+}
+
+impl MapFile {
+    /// A map without options.
+    pub(super) fn plain(names: Vec<String>, folder: &Path, at: String) -> Self {
+        MapFile { names, folder: folder.to_owned(), at, clamp: false, base: 0.0, gain: 1.0, channel: Channel::Any }
+    }
+
+    /// The file, and a warning if it is not quite the one that is named.
+    fn find(&self) -> Result<(PathBuf, Option<String>), String> {
+        let written = &self.names[0];
+        for name in self.names.iter().flat_map(|name| [name.clone(), name.replace('\\', "/")]) {
+            let path = self.folder.join(&name);
+            if path.is_file() {
+                return Ok((path, None));
+            }
+        }
+        for name in self.names.iter().map(|name| name.replace('\\', "/")) {
+            // Exporters write the paths of their own machine: the bare name beside the file is the next best guess.
+            let bare = name.rsplit('/').next().unwrap_or(&name);
+            let beside = || Some(self.folder.join(bare)).filter(|path| path.is_file());
+            let found = without_case(&self.folder, &name).or_else(beside).or_else(|| without_case(&self.folder, bare));
+            if let Some(path) = found {
+                let shown = path.strip_prefix(&self.folder).unwrap_or(&path).display();
+                let warning = format!("{}: `{written}` is not there; `{shown}` is used", self.at);
+                return Ok((path, Some(warning)));
+            }
+        }
+        // A name that exists but is no file deserves a better word than that it is missing.
+        let path = self.folder.join(written);
+        if path.exists() { Ok((path, None)) } else { Err("there is no such file".into()) }
+    }
+}
+
+/// A file whose path differs from `name` only in the case of its letters; the first one in alphabetical order.
+fn without_case(folder: &Path, name: &str) -> Option<PathBuf> {
+    let mut path = folder.to_owned();
+    for part in name.split('/').filter(|part| !part.is_empty() && *part != ".") {
+        let exact = path.join(part);
+        if exact.exists() {
+            path = exact;
+            continue;
+        }
+        let mut names: Vec<_> = std::fs::read_dir(&path)
+            .ok()?
+            .filter_map(|entry| Some(entry.ok()?.file_name()))
+            .filter(|name| name.to_string_lossy().to_lowercase() == part.to_lowercase())
+            .collect();
+        names.sort();
+        path.push(names.first()?);
+    }
+    path.is_file().then_some(path)
+}
+
+impl Textures {
+    /// The texture of a map that multiplies a colour; its alpha is the image's own. None if the file cannot be used, which is
+    /// a warning.
+    pub(super) fn colour(&mut self, map: &MapFile, warnings: &mut Vec<String>) -> Option<u32> {
+        self.load(map, None, warnings)
+    }
+
+    /// The texture of a map whose alpha is an opacity. None if the file cannot be used, which is a warning.
+    pub(super) fn opacity(&mut self, map: &MapFile, warnings: &mut Vec<String>) -> Option<u32> {
+        self.load(map, Some(map.channel), warnings)
+    }
+
+    /// What stands in for a texture that is missing: a checkerboard that nobody overlooks.
+    pub(super) fn fallback(&mut self) -> u32 {
+        const SIDE: u32 = 16;
+        *self.fallback.get_or_insert_with(|| {
+            let (one, zero) = (f16::ONE, f16::ZERO);
+            let check = |i: u32| (i % SIDE / 4 + i / SIDE / 4) % 2 == 0;
+            let colour = |i| if check(i) { [one, zero, one, one] } else { [zero, zero, zero, one] };
+            let texels = (0..SIDE * SIDE).map(colour).collect();
+            let name = "(missing texture)".into();
+            self.loaded.push(Texture { name, width: SIDE, height: SIDE, texels, clamp: false });
+            self.loaded.len() as u32 - 1
+        })
+    }
+
+    fn load(&mut self, map: &MapFile, scalar: Option<Channel>, warnings: &mut Vec<String>) -> Option<u32> {
+        let (path, guess) = match map.find() {
+            Ok(found) => found,
+            Err(reason) => {
+                self.refuse(&map.folder.join(&map.names[0]), map, &reason, warnings);
+                return None;
+            }
+        };
+        if let Some(guess) = guess
+            && self.said.insert(format!("{} {}", map.names[0], path.display()))
+        {
+            warnings.push(guess);
+        }
+        let file = path.canonicalize().unwrap_or_else(|_| path.clone());
+        let key = Key { file, clamp: map.clamp, base: map.base.to_bits(), gain: map.gain.to_bits(), scalar };
+        if let Some(texture) = self.by_key.get(&key) {
+            return *texture;
+        }
+        let texture = match ImageFile::open(&path) {
+            Ok(image) => {
+                let texels = texels(&image, map, scalar);
+                let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+                let (width, height) = (image.width, image.height);
+                self.loaded.push(Texture { name, width, height, texels, clamp: map.clamp });
+                Some(self.loaded.len() as u32 - 1)
+            }
+            Err(reason) => {
+                self.refuse(&path, map, &reason, warnings);
+                None
+            }
+        };
+        self.by_key.insert(key, texture);
+        texture
+    }
+
+    /// One warning for each file.
+    fn refuse(&mut self, path: &Path, map: &MapFile, reason: &str, warnings: &mut Vec<String>) {
+        if self.said.insert(path.display().to_string()) {
+            warnings.push(format!("{}: the texture {} cannot be used: {reason}", map.at, path.display()));
+        }
+    }
+}
+
+/// The texels as the tracers see them: options applied, finite, not negative, within half precision.
+fn texels(image: &ImageFile, map: &MapFile, scalar: Option<Channel>) -> Vec<[f16; 4]> {
+    let scalar = match scalar {
+        Some(Channel::Any) if image.has_transparency() => Some(Channel::One(3)),
+        other => other,
+    };
+    let range = |value: f32| map.base + map.gain * value;
+    (0..image.len())
+        .map(|texel| match scalar {
+            None => {
+                let [r, g, b, a] = image.linear(texel);
+                [half(range(r)), half(range(g)), half(range(b)), opacity(a)]
+            }
+            Some(channel) => {
+                let stored = image.stored(texel);
+                let value = match channel {
+                    Channel::One(index) => stored[usize::from(index)],
+                    Channel::Any | Channel::Luminance => luminance(stored),
+                };
+                [f16::ONE, f16::ONE, f16::ONE, opacity(range(value))]
+            }
+        })
+        .collect()
+}
+
+/// The luminance of linear sRGB primaries (ITU-R BT.709); the weights' sum is 1 even in single precision, so white is 1.
+fn luminance([r, g, b, _]: [f32; 4]) -> f32 {
+    (f64::from(r) * 0.2126 + f64::from(g) * 0.7152 + f64::from(b) * 0.0722) as f32
+}
+
+/// NaN and what is negative become 0.
+fn half(value: f32) -> f16 {
+    f16::from_f32(value.max(0.0).min(f16::MAX.to_f32()))
+}
+
+/// In [0, 1].
+fn opacity(value: f32) -> f16 {
+    f16::from_f32(value.max(0.0).min(1.0))
+}
+
+impl Texture {
+    /// The largest colour of all texels, channel by channel.
+    pub fn largest(&self) -> glam::Vec3 {
+        let colour = |[r, g, b, _]: &[f16; 4]| glam::Vec3::new(r.to_f32(), g.to_f32(), b.to_f32());
+        self.texels.iter().map(colour).fold(glam::Vec3::ZERO, glam::Vec3::max)
+    }
+
+    /// The least and the greatest alpha of all texels.
+    pub fn alpha_range(&self) -> (f32, f32) {
+        let alpha = self.texels.iter().map(|texel| texel[3].to_f32());
+        alpha.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), a| (low.min(a), high.max(a)))
+    }
+}

@@ -1,0 +1,201 @@
+//! How a scene file is seen and rendered: film, sensor, environment, integrator.
+
+use super::toml::File;
+use super::toml_tables::{EnvironmentTable, FilmTable, IntegratorKind, IntegratorTable, SensorKind, SensorTable};
+use super::{
+    Environment, Estimator, EstimatorChanges, FilmSettings, Integrator, Lens, PRESETS, Projection, Sensor,
+    environment_file, preview,
+};
+use crate::{Error, Result};
+use ::toml::Spanned;
+use glam::{DVec3, Vec3};
+use std::ops::Range;
+
+impl File<'_> {
+    /// The `[film]`.
+    pub(super) fn film(&self, table: Option<Spanned<FilmTable>>) -> Result<FilmSettings> {
+        let Some(table) = table else { return Ok(preview::FILM) };
+        let span = table.span();
+        let table = table.into_inner();
+        let width = table.width.map_or(preview::FILM.width, |pixels| pixels.0);
+        let height = table.height.map_or(preview::FILM.height, |pixels| pixels.0);
+        if u64::from(width) * u64::from(height) > u64::from(u32::MAX) {
+            return Err(self.error(span, format!("a film of {width} x {height} has more than 2^32 - 1 pixels")));
+        }
+        let filter_radius = table.filter_radius.map_or(table.filter.default_radius(), |radius| radius.0);
+        Ok(FilmSettings { width, height, filter: table.filter, filter_radius })
+    }
+
+    /// The `[sensor]`.
+    pub(super) fn sensor(&self, table: &Spanned<SensorTable>) -> Result<Sensor> {
+        let of = table.get_ref();
+        let projection = match (of.kind, &of.fov, &of.height) {
+            (SensorKind::Perspective, Some(fov), None) => Projection::Perspective { fov: fov.get_ref().0 },
+            (SensorKind::Orthographic, None, Some(height)) => Projection::Orthographic { height: height.get_ref().0 },
+            (SensorKind::Perspective, _, Some(height)) => {
+                let message = "`height` belongs to kind = \"orthographic\"; a perspective sensor has `fov`";
+                return Err(self.error(height.span(), message));
+            }
+            (SensorKind::Orthographic, Some(fov), _) => {
+                let message = "`fov` belongs to kind = \"perspective\"; an orthographic sensor has `height`";
+                return Err(self.error(fov.span(), message));
+            }
+            (SensorKind::Perspective, None, None) => {
+                return Err(self.error(table.span(), "missing field `fov`: the vertical field of view in degrees"));
+            }
+            (SensorKind::Orthographic, None, None) => {
+                let message = "missing field `height`: how much of the scene the picture shows, from bottom to top";
+                return Err(self.error(table.span(), message));
+            }
+        };
+        let sensor = Sensor {
+            position: of.position.0,
+            target: of.target.0,
+            up: of.up.map_or(Vec3::Y, |up| up.0),
+            projection,
+            lens: self.lens(of)?,
+        };
+        let view = sensor.target.as_dvec3() - sensor.position.as_dvec3();
+        let up = sensor.up.as_dvec3();
+        let wrong = if view == DVec3::ZERO {
+            "position and target of the sensor are the same point"
+        } else if up == DVec3::ZERO {
+            "the sensor's up is the zero vector"
+        } else if up.normalize().cross(view.normalize()).length() < 1e-6 {
+            "the sensor's up is parallel to its line of sight; choose another up"
+        } else {
+            return Ok(sensor);
+        };
+        Err(self.error(table.span(), wrong))
+    }
+
+    /// The sensor's lens, if its aperture is open.
+    fn lens(&self, table: &SensorTable) -> Result<Option<Lens>> {
+        let SensorTable { aperture, focus_distance, blades, blade_rotation, .. } = table;
+        let Some(aperture) = aperture else {
+            let needs = [
+                ("focus_distance", focus_distance.as_ref().map(Spanned::span)),
+                ("blades", blades.as_ref().map(Spanned::span)),
+                ("blade_rotation", blade_rotation.as_ref().map(Spanned::span)),
+            ];
+            return match needs.into_iter().find_map(|(key, span)| Some((key, span?))) {
+                None => Ok(None),
+                Some((key, span)) => {
+                    let message = format!("`{key}` belongs to a lens: give `aperture`, the radius of its opening, too");
+                    Err(self.error(span, message))
+                }
+            };
+        };
+        if table.kind == SensorKind::Orthographic {
+            let message = "an orthographic sensor has no lens: everything is in focus; leave `aperture` out";
+            return Err(self.error(aperture.span(), message));
+        }
+        let radius = aperture.get_ref().0;
+        if radius == 0.0 {
+            return Ok(None);
+        }
+        let to_target = (table.target.0.as_dvec3() - table.position.0.as_dvec3()).length() as f32;
+        Ok(Some(Lens {
+            radius,
+            focus_distance: focus_distance.as_ref().map_or(to_target, |distance| distance.get_ref().0),
+            blades: blades.as_ref().map_or(0, |blades| blades.get_ref().0),
+            rotation: blade_rotation.as_ref().map_or(0.0, |rotation| rotation.get_ref().0),
+        }))
+    }
+
+    /// The `[environment]`; none if it is black, which is a warning.
+    pub(super) fn environment(
+        &self,
+        table: &Spanned<EnvironmentTable>,
+        warnings: &mut Vec<String>,
+    ) -> Result<Option<Environment>> {
+        let EnvironmentTable { radiance, image, rotate } = table.get_ref();
+        let radiance = match (radiance, image) {
+            (Some(radiance), _) => radiance.0,
+            (None, Some(_)) => Vec3::ONE,
+            (None, None) => {
+                let message = "an environment needs a `radiance`, an `image`, or both";
+                return Err(self.error(table.span(), message));
+            }
+        };
+        if let (Some(rotate), None) = (rotate, image) {
+            return Err(self.error(rotate.span(), "`rotate` turns the `image` of the environment, and there is none"));
+        }
+        if radiance == Vec3::ZERO {
+            warnings.push(self.warning("the environment's radiance is 0; there is none"));
+            return Ok(None);
+        }
+        let image = match image {
+            None => None,
+            Some(name) => {
+                let path = self.beside(name.get_ref());
+                let read = environment_file::read(&path, warnings);
+                match read.map_err(|reason| self.error(name.span(), Error::read(&path, reason).to_string()))? {
+                    None => return Ok(None),
+                    image => image,
+                }
+            }
+        };
+        let rotation = rotate.as_ref().map_or(0.0, |rotate| rotate.get_ref().0);
+        Ok(Some(Environment { radiance, image, rotation }))
+    }
+
+    /// The `[integrator]`.
+    pub(super) fn integrator(&self, table: &IntegratorTable) -> Result<Integrator> {
+        let preset = table.estimator.as_ref();
+        let simple_preset = preset.is_some_and(|name| name.get_ref() == "simple");
+        let kind = table.kind.as_ref().map(|kind| *kind.get_ref());
+        if let (Some(kind), Some(preset)) = (kind, preset)
+            && (kind == IntegratorKind::Simple) != simple_preset
+        {
+            let message = format!("estimator = \"{}\" contradicts `kind`; leave `kind` out", preset.get_ref());
+            return Err(self.error(preset.span(), message));
+        }
+        if simple_preset || kind == Some(IntegratorKind::Simple) {
+            if let Some((key, span)) = parts(table).into_iter().find_map(|(key, span)| Some((key, span?))) {
+                let message = format!("`{key}` belongs to the path tracer; the simple ray tracer has no paths");
+                return Err(self.error(span, message));
+            }
+            let ambient = table.ambient.as_ref().map_or(Vec3::ZERO, |ambient| ambient.get_ref().0);
+            return Ok(Integrator::Simple { ambient });
+        }
+        if let Some(ambient) = &table.ambient {
+            let message = "`ambient` belongs to kind = \"simple\"; the path tracer computes what it stands for";
+            return Err(self.error(ambient.span(), message));
+        }
+        let estimator = match preset {
+            None => Estimator::default(),
+            Some(name) => Estimator::preset(name.get_ref()).ok_or_else(|| {
+                let names: Vec<_> = PRESETS.iter().map(|(name, _)| format!("`{name}`")).collect();
+                let (name, names, span) = (name.get_ref(), names.join(", "), name.span());
+                self.error(span, format!("no estimator is called `{name}`, expected `simple`, `default`, {names}"))
+            })?,
+        };
+        let estimator = EstimatorChanges {
+            light_sampling: table.light_sampling.as_ref().map(|part| *part.get_ref()),
+            area_sampling: table.area_sampling.as_ref().map(|part| *part.get_ref()),
+            directions: table.directions.as_ref().map(|part| *part.get_ref()),
+            extinction: table.extinction.as_ref().map(|part| *part.get_ref()),
+            albedo_threshold: table.albedo_threshold.as_ref().map(|part| part.get_ref().0),
+            max_bounces: table.max_bounces.as_ref().map(|part| *part.get_ref()),
+        }
+        .apply(estimator);
+        if !estimator.ends() {
+            let span = table.extinction.as_ref().map_or(0..0, Spanned::span);
+            return Err(self.error(span, "without extinction a path never ends: add `max_bounces`"));
+        }
+        Ok(Integrator::Path(estimator))
+    }
+}
+
+/// The keys that belong to the path tracer alone.
+fn parts(table: &IntegratorTable) -> [(&'static str, Option<Range<usize>>); 6] {
+    [
+        ("light_sampling", table.light_sampling.as_ref().map(Spanned::span)),
+        ("area_sampling", table.area_sampling.as_ref().map(Spanned::span)),
+        ("directions", table.directions.as_ref().map(Spanned::span)),
+        ("extinction", table.extinction.as_ref().map(Spanned::span)),
+        ("albedo_threshold", table.albedo_threshold.as_ref().map(Spanned::span)),
+        ("max_bounces", table.max_bounces.as_ref().map(Spanned::span)),
+    ]
+}

@@ -1,0 +1,156 @@
+//! The tables of a scene file, as `scenes/README.md` describes them.
+
+use super::toml_values::{
+    Angle, Blades, Colour, Exponent, Exposure, FilterRadius, Finite, Fov, Pixels, Positive, Samples, Triple, Unit,
+};
+use super::{AreaSampling, Directions, Extinction, Filter, LightSampling, Sampler};
+use ::toml::Spanned;
+use serde::Deserialize;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SceneFile {
+    pub film: Option<Spanned<FilmTable>>,
+    pub sensor: Option<Spanned<SensorTable>>,
+    pub environment: Option<Spanned<EnvironmentTable>>,
+    #[serde(default)]
+    pub integrator: IntegratorTable,
+    #[serde(default)]
+    pub render: RenderTable,
+    #[serde(default)]
+    pub object: Vec<Spanned<ObjectTable>>,
+    #[serde(default)]
+    pub material: Vec<MaterialTable>,
+    #[serde(default)]
+    pub luminaire: Vec<Spanned<LuminaireTable>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FilmTable {
+    pub width: Option<Pixels>,
+    pub height: Option<Pixels>,
+    #[serde(default)]
+    pub filter: Filter,
+    pub filter_radius: Option<FilterRadius>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SensorTable {
+    #[serde(default)]
+    pub kind: SensorKind,
+    pub position: Triple,
+    pub target: Triple,
+    pub up: Option<Triple>,
+    pub fov: Option<Spanned<Fov>>,
+    pub height: Option<Spanned<Positive>>,
+    pub aperture: Option<Spanned<Exponent>>,
+    pub focus_distance: Option<Spanned<Positive>>,
+    pub blades: Option<Spanned<Blades>>,
+    pub blade_rotation: Option<Spanned<Finite>>,
+}
+
+#[derive(Deserialize, Clone, Copy, Default, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum SensorKind {
+    #[default]
+    Perspective,
+    Orthographic,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct EnvironmentTable {
+    pub radiance: Option<Colour>,
+    pub image: Option<Spanned<String>>,
+    pub rotate: Option<Spanned<Finite>>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields)]
+pub(super) struct IntegratorTable {
+    pub kind: Option<Spanned<IntegratorKind>>,
+    pub ambient: Option<Spanned<Colour>>,
+    pub estimator: Option<Spanned<String>>,
+    pub light_sampling: Option<Spanned<LightSampling>>,
+    pub area_sampling: Option<Spanned<AreaSampling>>,
+    pub directions: Option<Spanned<Directions>>,
+    pub extinction: Option<Spanned<Extinction>>,
+    pub albedo_threshold: Option<Spanned<Unit>>,
+    pub max_bounces: Option<Spanned<u32>>,
+}
+
+#[derive(Deserialize, Clone, Copy, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum IntegratorKind {
+    Path,
+    Simple,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RenderTable {
+    pub spp: Option<Samples>,
+    pub seed: Option<u32>,
+    pub exposure: Option<Exposure>,
+    pub sampler: Option<Sampler>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ObjectTable {
+    pub mesh: Spanned<String>,
+    pub name: Option<String>,
+    pub material: Option<Spanned<String>>,
+    pub smooth: Option<Angle>,
+    pub translate: Option<Triple>,
+    pub rotate: Option<Triple>,
+    pub scale: Option<Scale>,
+    pub matrix: Option<[[Finite; 4]; 3]>,
+}
+
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "expected a number or three numbers [x, y, z], all finite")]
+pub(super) enum Scale {
+    Even(Finite),
+    Uneven(Triple),
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct MaterialTable {
+    pub name: Spanned<String>,
+    pub ambient: Option<Colour>,
+    pub diffuse: Option<Colour>,
+    pub glossy: Option<Colour>,
+    pub exponent: Option<Exponent>,
+    pub emission: Option<Colour>,
+    pub reflection: Option<Colour>,
+    pub transmission: Option<Colour>,
+    pub eta: Option<Positive>,
+    pub impulse_probability: Option<Unit>,
+    pub opacity: Option<Unit>,
+    pub ambient_map: Option<Spanned<String>>,
+    pub diffuse_map: Option<Spanned<String>>,
+    pub glossy_map: Option<Spanned<String>>,
+    pub emission_map: Option<Spanned<String>>,
+    pub opacity_map: Option<Spanned<String>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct LuminaireTable {
+    pub kind: LuminaireKind,
+    pub position: Option<Triple>,
+    pub intensity: Option<Colour>,
+    pub direction: Option<Triple>,
+    pub irradiance: Option<Colour>,
+}
+
+#[derive(Deserialize, Clone, Copy)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum LuminaireKind {
+    Point,
+    Infinite,
+}
