@@ -407,8 +407,8 @@ def shapes(out):
 
 def shadows(out):
     stage = Obj("A floor and a wall, a screen between the middle luminaire and the wall, and a fence.")
-    stage.part("floor", "floor", quad((-8, 0, 8), (8, 0, 8), (8, 0, -2), (-8, 0, -2)))
-    stage.part("wall", "wall", quad((-8, 0, -2), (8, 0, -2), (8, 6, -2), (-8, 6, -2)))
+    stage.part("floor", "floor", quad((-5, 0, 5), (5, 0, 5), (5, 0, -2), (-5, 0, -2)))
+    stage.part("wall", "wall", quad((-5, 0, -2), (5, 0, -2), (5, 4, -2), (-5, 4, -2)))
     stage.part("screen", "screen", box((-0.75, 0, -1.55), (0.75, 1.9, -1.5)))
     pickets = [box((x - 0.06, 0, 0.5), (x + 0.06, 0.9, 0.55)) for x in (-0.6, -0.3, 0.0, 0.3, 0.6)]
     stage.part("fence", "wood", join(pickets + [box((-0.75, h, 0.55), (0.75, h + 0.08, 0.6)) for h in (0.2, 0.62)]))
@@ -421,22 +421,23 @@ def directions(out):
     room.part("floor", "floor", quad((-3, 0, 4.5), (3, 0, 4.5), (3, 0, -3), (-3, 0, -3)))
     room.part("left", "red", quad((-3, 0, 4.5), (-3, 0, -3), (-3, 3.6, -3), (-3, 3.6, 4.5)))
     room.part("right", "blue", quad((3, 0, -3), (3, 0, 4.5), (3, 3.6, 4.5), (3, 3.6, -3)))
-    bowl = lathe([(0, 1.9), (0.25, 1.93), (0.5, 2.05), (0.62, 2.25), (0.58, 2.25), (0.47, 2.08), (0.24, 1.97), (0, 1.94)], 32)
-    foot = lathe([(0.3, 0), (0.28, 0.04), (0.05, 0.08), (0.04, 1.92)], 20)
+    bowl = lathe([(0, 1.2), (0.3, 1.22), (0.6, 1.3), (0.75, 1.42), (0.72, 1.42), (0.57, 1.33), (0.3, 1.26), (0, 1.24)], 32)
+    foot = lathe([(0.3, 0), (0.28, 0.04), (0.05, 0.08), (0.04, 1.22)], 20)
     room.part("lamp_stand", "metal", join([bowl, foot]).move(-1.7, 0, -1.7))
-    room.part("lamp", "lamp", disk(0.4, 24).move(-1.7, 2.12, -1.7))
+    room.part("lamp", "lamp", disk(0.56, 24).move(-1.7, 1.34, -1.7))
     room.write(out / "directions" / "room.obj", smooth=("lamp_stand",))
 
 
 def extinction(out):
-    rooms = Obj("Two rooms and a door between them; the lamp hangs in the one behind.")
+    rooms = Obj("Two rooms and an arcade between them; the lamp stands in the one behind.")
     rooms.part("front", "wall", inside((-2.6, 0, 0), (2.6, 3, 5), without=(0, 2)))
     rooms.part("floor", "floor", quad((-2.6, 0, 5), (2.6, 0, 5), (2.6, 0, -3.2), (-2.6, 0, -3.2)))
-    # The wall between the rooms is 0.2 thick, with a door from x = 0.2 to 1.5, 2.2 high.
-    for name, low, high in (("west", (-2.6, 0, -0.2), (0.2, 3, 0)), ("east", (1.5, 0, -0.2), (2.6, 3, 0)), ("lintel", (0.2, 2.2, -0.2), (1.5, 3, 0))):
-        rooms.part(name, "wall", box(low, high))
-    rooms.part("back", "wall", inside((-2.6, 0, -3.2), (2.6, 3, -0.2), without=(1, 2)))
-    rooms.part("lamp", "lamp", box((-1.4, 2.2, -2.4), (-0.6, 2.3, -1.6)))
+    # The wall between the rooms is 0.3 thick, with three doors 1 wide and 2.2 high.
+    for name, x in (("pier_1", -2.6), ("pier_2", -1.05), ("pier_3", 0.3), ("pier_4", 1.65)):
+        rooms.part(name, "wall", box((x, 0, -0.3), (-2.05 if x < -2 else 2.6 if x > 1.5 else x + 0.35, 2.2, 0)))
+    rooms.part("lintel", "wall", box((-2.6, 2.2, -0.3), (2.6, 3, 0)))
+    rooms.part("back", "wall", inside((-2.6, 0, -3.2), (2.6, 3, -0.3), without=(1, 2)))
+    rooms.part("lamp", "lamp", box((-1.3, 2.65, -1.2), (1.3, 2.75, -0.6)))
     rooms.write(out / "extinction" / "rooms.obj")
 
 
@@ -482,15 +483,15 @@ def mirror(out):
 def glass(out):
     studio = Obj("A backdrop and a lamp.")
     studio.part("backdrop", "backdrop", sweep(14, 6, 6, 3).move(0, 0, -0.6))
-    studio.part("lamp", "lamp", disk(0.45, 24).turn("z", -35).move(-2.6, 3.6, -0.9))
+    studio.part("lamp", "lamp", disk(0.6, 24).turn("z", 30).turn("x", -20).move(-2.2, 4.2, -1.6))
     studio.write(out / "glass" / "studio.obj", smooth=("backdrop",))
     bodies = Obj("A prism and a slab of glass, with their outsides outside; each stands 0.001 above the floor.")
     r = 0.5
     prism = [(r * math.sin(TAU * i / 3), r * math.cos(TAU * i / 3)) for i in range(3)]
     points = [(x, y, z) for z in (-0.8, 0.8) for x, y in prism]
     prism = Shape(points, [[0, 1, 2], [5, 4, 3], [0, 3, 4, 1], [1, 4, 5, 2], [2, 5, 3, 0]])
-    bodies.part("prism", "clear", prism.turn("y", 62).move(0.35, 0.251, 1.35))
-    bodies.part("slab", "tinted", box((-0.06, 0, -0.55), (0.06, 1.5, 0.55)).turn("y", -35).move(2.15, 0.001, -0.1))
+    bodies.part("prism", "clear", prism.turn("y", 52).move(1.75, 0.251, 1.25))
+    bodies.part("slab", "tinted", box((-0.06, 0, -0.55), (0.06, 1.5, 0.55)).turn("y", 35).move(2.3, 0.001, -0.35))
     bodies.write(out / "glass" / "bodies.obj")
 
 
@@ -500,9 +501,9 @@ def lens(out):
         table.part(material, material, checker((-4, -6), (4, 2), (8, 8), odd).move(0, 0.001, 0))
     rng = random.Random(5)
     small = [[], [], []]
-    for i in range(54):
+    for i in range(42):
         x, y, z = rng.uniform(-9, 9), rng.uniform(0.3, 5.2), rng.uniform(-18, -13)
-        small[i % 3].append(octahedron().scale(rng.uniform(0.035, 0.06)).move(x, y, z))
+        small[i % 3].append(octahedron().scale(rng.uniform(0.09, 0.13)).move(x, y, z))
     for lights, material in zip(small, ("warm", "cool", "rose")):
         table.part(material, material, join(lights))
     table.part("ground", "ground", quad((-30, -0.3, 10), (30, -0.3, 10), (30, -0.3, -30), (-30, -0.3, -30)))
@@ -533,7 +534,7 @@ def textures(out):
                 pixels.append(tuple(byte(c * grain * light) for c in (150 + hue, 74 + 0.4 * hue, 56)))
     write_png(folder / "bricks.png", size, size, pixels)
     # Only 8 by 8 texels: what is between them is bilinear.
-    pixels = [(226, 220, 205) if (x + y) % 2 else (52, 74, 78) for y in range(8) for x in range(8)]
+    pixels = [(226, 220, 205) if (x + y) % 2 else (24, 44, 50) for y in range(8) for x in range(8)]
     write_png(folder / "checker.png", 8, 8, pixels)
     # A maple-like leaf with veins; alpha is its outline.
     size, pixels = 128, []
