@@ -36,7 +36,6 @@ uvec4 owen_scramble(uvec4 x, uvec4 seed) {
 // Two independent, Owen-scrambled (0, 2)-sequences in `sample_index`, xy and zw: src/sampling/sobol.rs says how.
 uvec4 sobol4(uint pixel, uint sample_index, uint block, uint seed) {
     uvec4 seeds = random4(pixel, 0xffffffffu, block, seed);
-    seeds ^= seeds >> 16u;
     uvec2 x = bitfieldReverse(owen_scramble(uvec2(bitfieldReverse(sample_index)), seeds.zx ^ seeds.wy));
     uvec2 y = x ^ (x >> 1u & 0x55555555u);
     y ^= y >> 2u & 0x33333333u;

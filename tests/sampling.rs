@@ -265,3 +265,37 @@ fn pairs_are_independent() {
     let p = sidak(smallest, tests);
     assert!(p >= SIGNIFICANCE, "p = {p:.1e}");
 }
+
+/// The errors that pixels make with all their samples are independent of those of other pixels, blocks and seeds: correlations are those
+/// of chance.
+#[test]
+fn errors_are_independent() {
+    const PIXELS: u32 = 20_000;
+    let mut ps = Vec::new();
+    for n in [4, 16] {
+        for step in
+            [[1, 0, 0], [2, 0, 0], [512, 0, 0], [1 << 17, 0, 0], [1 << 31, 0, 0], [0, 1, 0], [0, 2, 0], [0, 0, 1]]
+        {
+            for (f, integral) in integrands().map(|(_, f, integral, _)| (f, integral)) {
+                let error = |pixel: u32, block, seed, pair: usize| {
+                    let point = |i| sobol4(pixel, i, block, seed);
+                    (0..n).map(point).map(|p| f(uniform(p[pair]), uniform(p[pair + 1]))).sum::<f64>() / f64::from(n)
+                        - integral
+                };
+                let errors: Vec<[f64; 2]> = (0..PIXELS)
+                    .into_par_iter()
+                    .map(|i| [error(i, 2, 5, 0), error(i.wrapping_add(step[0]), 2 + step[1], 5 + step[2], 0)])
+                    .collect();
+                let variance = errors.iter().map(|[a, _]| a * a).sum::<f64>() / f64::from(PIXELS);
+                let Estimate { mean, error } = Estimate::new(errors.iter().map(|[a, b]| a * b / variance));
+                ps.push((
+                    two_sided(mean / error),
+                    format!("{n} samples, step {step:?}: correlation {mean:.4} +- {error:.4}"),
+                ));
+            }
+        }
+    }
+    let (smallest, what) = ps.iter().min_by(|a, b| a.0.total_cmp(&b.0)).expect("tests");
+    let p = sidak(*smallest, ps.len());
+    assert!(p >= SIGNIFICANCE, "p = {p:.1e} (of {}): {what}", ps.len());
+}

@@ -67,13 +67,17 @@ impl Reference {
         let chosen = self.luminaires.choice.choose(random[0]);
         let probability = self.luminaires.choice.pdf[chosen];
         match &self.luminaires.entries[chosen] {
-            SampledLuminaire::Impulse(luminaire) => from_impulse(surfel, luminaire, probability),
+            SampledLuminaire::Impulse(luminaire) => impulse(surfel, luminaire, probability),
             SampledLuminaire::Area(triangle) => {
-                self.from_triangle(surfel, triangle, probability, uniform(random[1]), uniform(random[2]))
+                self.point_on_triangle(surfel, triangle, probability, uniform(random[1]), uniform(random[2]))
             }
             SampledLuminaire::Environment => {
                 let wi = self.sample_environment(random)?;
                 let pdf = probability * self.environment_density(wi);
+                // On the edge of a texel the direction may round into the next one, which may be black.
+                if pdf == 0.0 {
+                    return None;
+                }
                 let irradiance = self.environment_radiance(wi) / pdf;
                 let origin = surfel.offset_ray_origin(wi);
                 Some(Unoccluded { wi, irradiance, pdf: Some(pdf), origin, direction: wi, t_max: f64::INFINITY })
@@ -82,7 +86,7 @@ impl Reference {
     }
 
     /// A point on an emissive triangle: radiance over the density of its direction.
-    fn from_triangle(
+    fn point_on_triangle(
         &self,
         surfel: &Surfel,
         triangle: &EmissiveTriangle,
@@ -172,7 +176,7 @@ impl Reference {
 }
 
 /// A luminaire without an area: inverse-square law, or no attenuation at infinity.
-fn from_impulse(surfel: &Surfel, luminaire: &Luminaire, probability: f64) -> Option<Unoccluded> {
+fn impulse(surfel: &Surfel, luminaire: &Luminaire, probability: f64) -> Option<Unoccluded> {
     match luminaire {
         Luminaire::Point { position, intensity } => {
             let position = position.as_dvec3();

@@ -41,10 +41,10 @@ pub fn scatter_block(bounce: u32) -> u32 {
 #[serde(rename_all = "kebab-case")]
 pub enum Sampler {
     /// Independent numbers: [`random4`].
-    #[default]
     Independent,
     /// Owen-scrambled Sobol points, two dimensions at a time: [`sobol::sobol4`]. Less noise for the same number of samples, most of all
     /// where that number is a power of two.
+    #[default]
     Sobol,
 }
 

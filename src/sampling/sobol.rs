@@ -42,8 +42,7 @@ pub fn second_dimension(index: u32) -> u32 {
 /// The four numbers of a block: two pairs, each a scrambled (0, 2)-sequence in `sample`, independent of each other and of all other
 /// pixels, blocks and seeds.
 pub fn sobol4(pixel: u32, sample: u32, block: u32, seed: u32) -> [u32; 4] {
-    // Bit 0 of a seed decides about the largest intervals, but bit 0 of random4 does not depend on the arguments' upper bits.
-    let seeds = random4(pixel, u32::MAX, block, seed).map(|s| s ^ s >> 16);
+    let seeds = random4(pixel, u32::MAX, block, seed);
     // Four numbers make six seeds: those of one pair are independent.
     let [x0, y0] = pair(sample, seeds[2] ^ seeds[3], [seeds[0], seeds[1]]);
     let [x1, y1] = pair(sample, seeds[0] ^ seeds[1], [seeds[2], seeds[3]]);

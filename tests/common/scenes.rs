@@ -5,7 +5,8 @@ use luminaire::reference::surfel::Surfel;
 use luminaire::scene::*;
 use std::collections::HashMap;
 
-/// A scene without objects, to be filled by [`add`]: the sensor is at the origin and looks along -z, 60 degrees high; unlimited paths.
+/// A scene without objects, to be filled by [`add`]: the sensor is at the origin and looks along -z, 60 degrees high; unlimited paths. The
+/// random numbers are independent: statistics want independent samples.
 pub fn empty(width: u32, height: u32) -> Scene {
     Scene {
         path: "test".into(),
@@ -18,7 +19,7 @@ pub fn empty(width: u32, height: u32) -> Scene {
         sensor: pinhole(Vec3::ZERO, -Vec3::Z, Vec3::Y, 60.0),
         film: FilmSettings { width, height, filter: Filter::Box, filter_radius: 0.5 },
         integrator: Integrator::Path(Estimator::default()),
-        settings: RenderSettings::default(),
+        settings: RenderSettings { sampler: Sampler::Independent, ..RenderSettings::default() },
         warnings: vec![],
     }
 }
@@ -191,4 +192,103 @@ pub fn flat_surfel(lambert: DVec3, glossy: DVec3, exponent: f64) -> Surfel {
         eta: None,
         impulse_probability: None,
     }
+}
+
+/// A texture from a function of the texel's place.
+pub fn texture(width: u32, height: u32, texel: impl Fn(u32, u32) -> [f32; 4]) -> Texture {
+    let texels = (0..width * height).map(|i| texel(i % width, i / width).map(half::f16::from_f32)).collect();
+    Texture { name: "texture".into(), width, height, texels, clamp: false }
+}
+
+/// The room of [`cornell_like`] with impulses: a glass ball and a mirrored one (smooth), a slab of coloured glass, and the lecture's 60/40
+/// mirror for a wall.
+pub fn glass_room(width: u32, height: u32) -> Scene {
+    let mut scene = cornell_like(width, height);
+    scene.materials[2] =
+        Material { reflection: Vec3::splat(0.6), impulse_probability: Some(0.6), ..matte(Vec3::new(0.4, 0.35, 0.3)) };
+    let mut ball = icosphere(3);
+    ball.normals = ball.positions.clone();
+    let glass = Material {
+        name: "glass".into(),
+        reflection: Vec3::ONE,
+        transmission: Vec3::new(0.9, 1.0, 0.95),
+        eta: Some(1.5),
+        ..Material::default()
+    };
+    let place = |x, y, z, r| Affine3A::from_translation(Vec3::new(x, y, z)) * Affine3A::from_scale(Vec3::splat(r));
+    add(&mut scene, ball.clone(), glass.clone(), place(-0.25, -0.5, 0.25, 0.5));
+    let mirror = Material { name: "mirror".into(), reflection: Vec3::new(0.95, 0.8, 0.6), ..Material::default() };
+    add(&mut scene, ball, mirror, place(0.9, 0.5, -0.75, 0.6));
+    let slab =
+        place(-1.0, 0.75, 0.0, 1.0) * Affine3A::from_rotation_z(0.5) * Affine3A::from_scale(Vec3::new(-0.1, 0.4, 0.4));
+    add(&mut scene, cube(), Material { transmission: Vec3::new(0.2, 0.9, 0.4), eta: Some(1.3), ..glass }, slab);
+    scene
+}
+
+/// The room with textures: a chequered floor, a glossy map, a screen that glows by a texture, a curtain with holes, a half-transparent one.
+pub fn textured_room(width: u32, height: u32) -> Scene {
+    let mut scene = cornell_like(width, height);
+    let chequer = |x: u32, y: u32| if (x + y).is_multiple_of(2) { 0.9 } else { 0.2 };
+    scene.textures = vec![
+        texture(8, 8, |x, y| [chequer(x, y), chequer(x, y + 1), 0.5, 1.0]),
+        texture(5, 3, |x, y| [x as f32 / 4.0, y as f32 / 2.0, 1.0, 1.0]),
+        texture(16, 16, |x, y| [1.0, 1.0, 1.0, if x % 4 < 2 && y % 3 > 0 { 0.0 } else { 1.0 }]),
+    ];
+    scene.textures[1].clamp = true;
+    for mesh in &mut scene.meshes {
+        // From the positions, so that every triangle has some that vary.
+        mesh.uvs =
+            mesh.positions.iter().map(|p| glam::Vec2::new(0.5 * p.x + 0.3 * p.z, 0.5 * p.y - 0.4 * p.z)).collect();
+    }
+    scene.materials[0].maps.lambert = Some(0);
+    let ball = scene.materials.len() - 1;
+    scene.materials[ball].maps.glossy = Some(1);
+    scene.materials[4].maps.ambient = Some(1);
+    let with_uvs = |mut mesh: Mesh| {
+        mesh.uvs = vec![glam::Vec2::ZERO, glam::Vec2::X * 2.0, glam::Vec2::new(2.0, 1.5), glam::Vec2::Y * 1.5];
+        mesh
+    };
+    let screen = with_uvs(quad(Vec3::new(1.9375, -0.5, -1.0), Vec3::Z, Vec3::Y));
+    let mut glow = lamp(Vec3::splat(3.0));
+    glow.maps.emission = Some(1);
+    add(&mut scene, screen, glow, Affine3A::IDENTITY);
+    let curtain = with_uvs(quad(Vec3::new(-1.25, 0.25, -0.5), Vec3::X, Vec3::Y));
+    let mut cloth = matte(Vec3::new(0.5, 0.6, 0.7));
+    cloth.maps.opacity = Some(2);
+    add(&mut scene, curtain, cloth, Affine3A::IDENTITY);
+    let veil = with_uvs(quad(Vec3::new(0.0, 0.25, 0.5), Vec3::X, Vec3::Y * 0.75));
+    // It glows as well, where it is.
+    let veil_material = Material { opacity: 0.4, emission: Vec3::splat(0.5), ..matte(Vec3::splat(0.8)) };
+    add(&mut scene, veil, veil_material, Affine3A::IDENTITY);
+    scene
+}
+
+/// Under a sky with a sun: the boxes and the glossy ball on a floor, seen through a lens with six blades, with a Gaussian filter, by Sobol
+/// points.
+pub fn open_air(width: u32, height: u32) -> Scene {
+    let mut scene = cornell_like(width, height);
+    // Without walls, ceiling and lamp.
+    scene.objects.retain(|object| ![1, 2, 3, 4, 5, 6].contains(&object.mesh));
+    scene.luminaires.clear();
+    let (columns, rows) = (16, 8);
+    let sky = |x: u32, y: u32| match (x, y) {
+        (11, 2) => Vec3::new(60.0, 50.0, 40.0),
+        (_, 4..) => Vec3::new(0.1, 0.08, 0.06),
+        _ => Vec3::new(0.3, 0.5, 0.9) * (1.0 + 0.1 * x as f32),
+    };
+    scene.environment = Some(Environment {
+        radiance: Vec3::new(0.8, 0.9, 1.0),
+        image: Some(EnvironmentImage {
+            name: "sky".into(),
+            width: columns,
+            height: rows,
+            texels: (0..columns * rows).map(|i| sky(i % columns, i / columns)).collect(),
+        }),
+        rotation: 30.0,
+    });
+    scene.sensor.lens = Some(Lens { radius: 0.0625, focus_distance: 2.5, blades: 6, rotation: 10.0 });
+    scene.film.filter = Filter::Gaussian;
+    scene.film.filter_radius = 1.5;
+    scene.settings.sampler = Sampler::Sobol;
+    scene
 }

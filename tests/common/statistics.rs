@@ -130,3 +130,34 @@ pub fn total(image: &Image) -> Estimate {
     // Channels share their samples: at worst they vary as one.
     Estimate { mean, error: (3.0 * variance).sqrt() / n }
 }
+
+/// `p` of counts against expected counts (Pearson). Cells that expect fewer than ten are put together.
+pub fn chi_square_against(counts: &[u32], expected: &[f64]) -> f64 {
+    assert_eq!(counts.len(), expected.len());
+    let (mut sum, mut cells, mut few) = (0.0, 0.0, (0.0, 0.0));
+    let mut cell = |count: f64, expected: f64| {
+        sum += (count - expected).powi(2) / expected;
+        cells += 1.0;
+    };
+    for (count, expected) in counts.iter().map(|count| f64::from(*count)).zip(expected) {
+        if *expected < 10.0 {
+            few = (few.0 + count, few.1 + expected);
+        } else {
+            cell(count, *expected);
+        }
+    }
+    if few.1 >= 10.0 {
+        cell(few.0, few.1);
+    } else {
+        assert!(few.0 <= few.1 + 30.0, "{} samples where {} are expected", few.0, few.1);
+    }
+    assert!(cells >= 2.0, "too few samples for a chi-square test");
+    ChiSquared::new(cells - 1.0).expect("more than one cell").sf(sum)
+}
+
+/// `p` of two means being the same (z-test: the samples are many).
+pub fn same_mean(a: Estimate, b: Estimate) -> f64 {
+    let difference = a.mean - b.mean;
+    // Rounding is all that is left where the samples do not vary.
+    if difference.abs() <= 1e-12 * a.mean.abs() { 1.0 } else { two_sided(difference / a.error.hypot(b.error)) }
+}

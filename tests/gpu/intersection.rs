@@ -38,7 +38,7 @@ fn probe_hits(backend: &Intersector, scene: &Scene, function: Function, rays: &[
 fn oracle_hits(oracle: &Reference, rays: &[Ray]) -> Vec<Found> {
     rays.iter()
         .map(|r| {
-            let hit = oracle.closest_hit(r.origin.as_dvec3(), r.direction.as_dvec3(), f64::from(r.t_max))?;
+            let hit = oracle.closest_hit(r.origin.as_dvec3(), r.direction.as_dvec3(), f64::from(r.t_max), 0)?;
             Some((hit.t, hit.object, hit.triangle))
         })
         .collect()

@@ -7,9 +7,11 @@
 mod common;
 
 mod fallback;
+mod features;
 mod functions;
 mod intersection;
 mod pictures;
+mod sensor;
 
 use luminaire::gpu::{Device, GpuTracer, Instance, validation_messages};
 use luminaire::scene::Scene;

@@ -10,7 +10,7 @@ use luminaire::render::Tracer;
 use luminaire::scene::{Integrator, Luminaire, Material, Projection, Scene};
 
 /// Mean of every pixel over samples 0 to `samples`.
-fn pixels(tracer: &mut dyn Tracer, scene: &Scene, samples: u32) -> Vec<DVec3> {
+pub fn pixels(tracer: &mut dyn Tracer, scene: &Scene, samples: u32) -> Vec<DVec3> {
     let tile = Tile { x: 0, y: 0, width: scene.film.width, height: scene.film.height };
     let traced = tracer.trace(&Batch { tile, samples: 0..samples, group: samples }).expect("the tracer works");
     assert_eq!(traced.non_finite, 0);
@@ -18,7 +18,7 @@ fn pixels(tracer: &mut dyn Tracer, scene: &Scene, samples: u32) -> Vec<DVec3> {
 }
 
 /// How many pixels of two pictures differ by more than `tolerance` of the brighter one (or of a hundredth of the mean).
-fn differing(a: &[DVec3], b: &[DVec3], tolerance: f64) -> usize {
+pub fn differing(a: &[DVec3], b: &[DVec3], tolerance: f64) -> usize {
     let floor = a.iter().map(|p| p.element_sum() / 3.0).sum::<f64>() / a.len() as f64 * 0.01;
     a.iter()
         .zip(b)
@@ -26,7 +26,7 @@ fn differing(a: &[DVec3], b: &[DVec3], tolerance: f64) -> usize {
         .count()
 }
 
-fn mean(pixels: &[DVec3]) -> DVec3 {
+pub fn mean(pixels: &[DVec3]) -> DVec3 {
     pixels.iter().sum::<DVec3>() / pixels.len() as f64
 }
 

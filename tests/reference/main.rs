@@ -3,7 +3,13 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod environment;
+mod estimators;
+mod impulses;
 mod intersection;
 mod light;
 mod sampling;
+mod sensor;
+mod scattering;
+mod textures;
 mod transport;

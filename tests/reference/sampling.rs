@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 const N: u32 = 400_000;
 
 /// Counts `N` samples in 20 x 20 cells of the unit square.
-fn histogram(map: impl Fn(f64, f64) -> (f64, f64)) -> Vec<u32> {
+pub fn histogram(map: impl Fn(f64, f64) -> (f64, f64)) -> Vec<u32> {
     let mut counts = vec![0; 400];
     for i in 0..N {
         let random = random4(i, 7, 3, 1);
@@ -81,7 +81,7 @@ fn chi_square_has_power() {
 
 /// Share of the light from `wo` that is scattered: the midpoint rule over half vectors, spaced evenly under the density
 /// `(m + 1) / 2 pi * cos^m`, so that lobes of every width are resolved.
-fn directional_albedo(surfel: &Surfel, wo: DVec3) -> f64 {
+pub fn directional_albedo(surfel: &Surfel, wo: DVec3) -> f64 {
     let (n, m) = (600, surfel.exponent);
     let mut sum = 0.0;
     for i in 0..n {

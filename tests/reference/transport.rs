@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use std::f64::consts::PI;
 
 /// A closed shell around the sensor that emits 1.
-fn furnace(albedo: Vec3) -> Scene {
+pub fn furnace(albedo: Vec3) -> Scene {
     let mut scene = empty(16, 16);
     scene.integrator = preset("cosine");
     scene.sensor.position = Vec3::new(0.25, 0.125, 0.5);
@@ -23,12 +23,12 @@ fn furnace(albedo: Vec3) -> Scene {
     scene
 }
 
-fn preset(name: &str) -> Integrator {
+pub fn preset(name: &str) -> Integrator {
     Integrator::Path(Estimator::preset(name).expect("a preset"))
 }
 
 /// Mean of each channel over all pixels and samples.
-fn means(scene: &Scene, samples: u32) -> [Estimate; 3] {
+pub fn means(scene: &Scene, samples: u32) -> [Estimate; 3] {
     let tracer = Reference::new(scene);
     let pixels = scene.film.width * scene.film.height;
     let all: Vec<DVec3> =

@@ -1,0 +1,149 @@
+//! The environment: lookup, density, and directions.
+
+use crate::common::scenes::*;
+use crate::common::statistics::*;
+use crate::transport::means;
+use glam::{Affine3A, DVec3, Vec3};
+use luminaire::reference::Reference;
+use luminaire::sampling::{random4, uniform};
+use luminaire::scene::{Environment, EnvironmentImage, Scene};
+use std::f64::consts::{PI, TAU};
+
+const WIDTH: u32 = 8;
+const HEIGHT: u32 = 5;
+
+/// An image with a sun, dark texels and black ones, turned by 37 degrees.
+fn sky() -> Environment {
+    let mut texels: Vec<Vec3> = (0..WIDTH * HEIGHT)
+        .map(|i| {
+            let [r, g, b, dark] = random4(i, 0, 0, 5).map(|r| uniform(r) as f32);
+            if dark < 0.3 { Vec3::ZERO } else { Vec3::new(r, g, b) }
+        })
+        .collect();
+    texels[WIDTH as usize + 3] = Vec3::new(60.0, 50.0, 40.0);
+    let image = EnvironmentImage { name: "sky".into(), width: WIDTH, height: HEIGHT, texels };
+    Environment { radiance: Vec3::new(0.5, 1.0, 2.0), image: Some(image), rotation: 37.0 }
+}
+
+fn under(environment: Environment) -> Scene {
+    let mut scene = empty(8, 8);
+    // The sensor looks past it.
+    add(&mut scene, cube(), matte(Vec3::splat(0.5)), Affine3A::from_translation(Vec3::Z * 10.0));
+    scene.environment = Some(environment);
+    scene
+}
+
+fn direction(phi: f64, cos: f64) -> DVec3 {
+    let sin = (1.0 - cos * cos).sqrt();
+    DVec3::new(sin * phi.sin(), cos, -sin * phi.cos())
+}
+
+/// Where a direction is in the image, in texels, by hand.
+fn position(w: DVec3, rotation: f64) -> (f64, f64) {
+    let phi = w.x.atan2(-w.z).to_degrees();
+    (((phi + 180.0 + rotation) / 360.0).rem_euclid(1.0) * f64::from(WIDTH), w.y.acos() / PI * f64::from(HEIGHT))
+}
+
+/// The middle of the image is -z, the right half +x, the top +y; turned by 90 degrees counter-clockwise from above, the middle is -x.
+#[test]
+fn lookup_at_known_directions() {
+    let image =
+        |texels: Vec<Vec3>, width: u32, height: u32| EnvironmentImage { name: "i".into(), width, height, texels };
+    let grey = |v: &[f32]| v.iter().map(|v| Vec3::splat(*v)).collect::<Vec<_>>();
+    let look = |image: &EnvironmentImage, rotation: f32, w: DVec3| {
+        let environment = Environment { radiance: Vec3::splat(2.0), image: Some(image.clone()), rotation };
+        Reference::new(&under(environment)).environment_radiance(w.normalize()).x
+    };
+    let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-12, "{a} instead of {b}");
+    // Four columns: centres at -135, -45, 45 and 135 degrees from -z towards +x.
+    let row = image(grey(&[1.0, 2.0, 3.0, 4.0]), 4, 1);
+    for rotation in [0.0, 90.0, -270.0] {
+        let turned = |x: f64, z: f64| if rotation == 0.0 { DVec3::new(x, 0.0, z) } else { DVec3::new(z, 0.0, -x) };
+        close(look(&row, rotation, turned(0.0, -1.0)), 5.0);
+        close(look(&row, rotation, turned(1.0, -1.0)), 6.0);
+        close(look(&row, rotation, turned(-1.0, -1.0)), 4.0);
+        close(look(&row, rotation, turned(1.0, 0.0)), 7.0);
+        close(look(&row, rotation, turned(1.0, 1.0)), 8.0);
+        // Behind, the last column meets the first.
+        close(look(&row, rotation, turned(0.0, 1.0)), 5.0);
+        close(look(&row, rotation, turned(-1.0, 1.0)), 2.0);
+    }
+    // Two rows: centres at 45 and 135 degrees from +y; nothing beyond the poles.
+    let column = image(grey(&[1.0, 3.0]), 1, 2);
+    close(look(&column, 0.0, DVec3::Y), 2.0);
+    close(look(&column, 0.0, DVec3::new(0.0, 1.0, 1.0)), 2.0);
+    close(look(&column, 0.0, DVec3::X), 4.0);
+    close(look(&column, 0.0, DVec3::new(1.0, -1.0, 0.0)), 6.0);
+    close(look(&column, 0.0, -DVec3::Y), 6.0);
+}
+
+/// Directions fall into the parts of each texel in proportion to density times solid angle.
+#[test]
+fn directions_have_their_density() {
+    const N: u32 = 400_000;
+    const PARTS: usize = 3;
+    let tracer = Reference::new(&under(sky()));
+    let (columns, rows) = (WIDTH as usize * PARTS, HEIGHT as usize * PARTS);
+    let mut expected = vec![0.0; columns * rows];
+    let edge = |row: usize| (PI * row as f64 / rows as f64).cos();
+    for (i, expected) in expected.iter_mut().enumerate() {
+        let (column, row) = (i % columns, i / columns);
+        let phi = TAU * ((column as f64 + 0.5) / columns as f64 - 0.5 - 37.0 / 360.0);
+        let density = tracer.environment_density(direction(phi, 0.5 * (edge(row) + edge(row + 1))));
+        *expected = density * TAU / columns as f64 * (edge(row) - edge(row + 1));
+    }
+    let mass: f64 = expected.iter().sum();
+    assert!((mass - 1.0).abs() < 1e-12, "the density integrates to {mass}");
+    expected.iter_mut().for_each(|share| *share *= f64::from(N));
+    let mut counts = vec![0; expected.len()];
+    for i in 0..N {
+        let wi = tracer.sample_environment(random4(i, 0, 1, 7)).expect("not black");
+        assert!((wi.length() - 1.0).abs() < 1e-14);
+        let (x, y) = position(wi, 37.0);
+        let cell = |x: f64, n: usize| ((x * PARTS as f64) as usize).min(n - 1);
+        counts[cell(y, rows) * columns + cell(x, columns)] += 1;
+    }
+    let p = chi_square_against(&counts, &expected);
+    assert!(p >= SIGNIFICANCE, "p = {p:.1e}");
+}
+
+/// Radiance over density averages to the integral of the radiance, and no direction with light has the density zero.
+#[test]
+fn directions_find_all_light() {
+    let tracer = Reference::new(&under(sky()));
+    let mut integral = 0.0;
+    let n = 800;
+    for i in 0..n * n {
+        let w = direction(
+            (f64::from(i % n) + 0.5) / f64::from(n) * TAU,
+            1.0 - 2.0 * (f64::from(i / n) + 0.5) / f64::from(n),
+        );
+        let radiance = tracer.environment_radiance(w).y;
+        assert!(radiance == 0.0 || tracer.environment_density(w) > 0.0, "light without density at {w}");
+        integral += radiance * 4.0 * PI / f64::from(n * n);
+    }
+    let found = Estimate::new((0..200_000).map(|i| {
+        let wi = tracer.sample_environment(random4(i, 0, 1, 8)).expect("not black");
+        tracer.environment_radiance(wi).y / tracer.environment_density(wi)
+    }));
+    // The quadrature is good to 1e-4.
+    found.assert_within(integral * 0.9999, integral * 1.0001, 2e-3);
+}
+
+/// Without an image all directions are the same; a black environment is no luminaire; and what the camera sees is the radiance itself.
+#[test]
+fn constant_and_black_environments() {
+    let constant = |radiance: Vec3| Environment { radiance, image: None, rotation: 30.0 };
+    let scene = under(constant(Vec3::new(1.0, 2.0, 3.0)));
+    let tracer = Reference::new(&scene);
+    for i in 0..100 {
+        let wi = tracer.sample_environment(random4(i, 0, 1, 7)).expect("not black");
+        assert!((tracer.environment_density(wi) * 4.0 * PI - 1.0).abs() < 1e-12);
+        assert_eq!(tracer.environment_radiance(wi), DVec3::new(1.0, 2.0, 3.0));
+    }
+    assert!(tracer.environment_pdf(DVec3::Y) > 0.0);
+    assert_eq!(means(&scene, 2).map(|e| e.mean), [1.0, 2.0, 3.0]);
+    let tracer = Reference::new(&under(constant(Vec3::ZERO)));
+    assert!(tracer.sample_environment([7; 4]).is_none());
+    assert_eq!(tracer.environment_pdf(DVec3::Y), 0.0);
+}
