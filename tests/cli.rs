@@ -134,7 +134,14 @@ fn numbers_and_names() {
         ["--seed", "4294967296"],
         ["--exposure", "inf"],
         ["--max-bounces", "x"],
-        ["--integrator", "photon"],
+        ["--max-bounces", "1000001"],
+        ["--estimator", "photon"],
+        ["--light-sampling", "some"],
+        ["--area-sampling", "some"],
+        ["--directions", "some"],
+        ["--extinction", "some"],
+        ["--albedo-threshold", "2"],
+        ["--sampler", "dice"],
         ["--backend", "gpu"],
     ] {
         folder.fails(&["render", "good.obj", words[0], words[1]], 2, &[words[0], words[1]]);
@@ -148,8 +155,12 @@ fn numbers_and_names() {
 fn options_that_do_not_go_together() {
     let folder = Folder::new();
     folder.fails(&["render", "good.obj", "--backend", "cpu", "--device", "0"], 2, &["--device", "--backend cpu"]);
-    let simple = ["render", "good.obj", "--integrator", "simple", "--max-bounces", "3"];
-    folder.fails(&simple, 2, &["--max-bounces", "--integrator"]);
+    let simple = ["render", "good.obj", "--estimator", "simple", "--max-bounces", "3"];
+    folder.fails(&simple, 2, &["--max-bounces", "--estimator"]);
+    folder.fails(&["render", "good.obj", "--extinction", "off"], 2, &["never ends", "--max-bounces"]);
+    folder.write("simple.toml", "[integrator]\nestimator = \"simple\"\n[[object]]\nmesh = \"good.obj\"\n");
+    let directions = ["render", "simple.toml", "--directions", "uniform"];
+    folder.fails(&directions, 2, &["--directions", "--estimator default"]);
 }
 
 #[test]
@@ -228,6 +239,36 @@ fn a_render_writes_what_it_says() {
     let again = folder.luminaire(&words).arg("--quiet").output().unwrap();
     assert_eq!(again.status.code(), Some(0));
     assert!(again.stdout.is_empty() && again.stderr.is_empty(), "{again:?}");
+}
+
+#[test]
+fn whether_a_picture_is_black_depends_on_the_estimator() {
+    let folder = Folder::new();
+    let light = "[[luminaire]]\nkind = \"point\"\nposition = [0, 0, 1]\nintensity = [1, 1, 1]\n";
+    let object = "[[object]]\nmesh = \"plain.obj\"\n";
+    folder.write("plain.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    folder.write("lit.toml", &format!("{light}{object}"));
+    folder.write("by-chance.toml", &format!("[integrator]\nlight_sampling = \"none\"\n{light}{object}"));
+    let black = |words: &[&str]| {
+        let rest = ["--backend", "cpu", "--spp", "1", "--width", "8", "-o", "a.png"];
+        let output = folder.luminaire(&[&["render"][..], words, &rest].concat()).output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{words:?}: {}", stderr(&output));
+        stderr(&output).contains("will be black")
+    };
+    assert!(!black(&["lit.toml"]));
+    assert!(black(&["lit.toml", "--light-sampling", "none"]));
+    assert!(black(&["by-chance.toml"]));
+    assert!(!black(&["by-chance.toml", "--estimator", "default"]));
+}
+
+#[test]
+fn the_help_explains_estimators() {
+    let folder = Folder::new();
+    let output = folder.luminaire(&["render", "--help"]).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stdout);
+    for name in ["simple", "default", "no-light-sampling", "uniform", "cosine", "literal-extinction", "threshold"] {
+        assert!(said.contains(&format!("  {name}  ")), "{name} is not explained in\n{said}");
+    }
 }
 
 #[test]

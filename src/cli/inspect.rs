@@ -1,10 +1,10 @@
 //! `luminaire inspect`.
 
-use super::{print, table};
-use glam::Vec3;
+use super::inspect_tables::{luminaires, materials, meshes, objects, rgb, textures};
+use super::{estimator, print, table};
 use luminaire::Result;
 use luminaire::gpu::model::KernelModel;
-use luminaire::scene::{self, Integrator, Luminaire, LuminaireTable, Mesh, SampledLuminaire, Scene};
+use luminaire::scene::{self, Environment, Mesh, Projection, Scene};
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -37,15 +37,21 @@ fn describe(scene: &Scene) -> String {
             row("sensor", sensor(scene)),
             row(
                 "film",
-                format!("{} x {} pixels, {:?} filter", scene.film.width, scene.film.height, scene.film.filter)
-                    .to_lowercase(),
+                format!(
+                    "{} x {} pixels, {} filter of radius {}",
+                    scene.film.width,
+                    scene.film.height,
+                    filter(scene.film.filter),
+                    scene.film.filter_radius
+                ),
             ),
-            row("integrator", integrator(&scene.integrator)),
+            row("environment", scene.environment.as_ref().map_or("none".into(), environment)),
+            row("integrator", estimator::describe(&scene.integrator)),
             row(
                 "render",
                 format!(
-                    "{} samples a pixel, seed {}, exposure {}",
-                    scene.settings.spp, scene.settings.seed, scene.settings.exposure
+                    "{} samples a pixel, {:?} sampler, seed {}, exposure {}",
+                    scene.settings.spp, scene.settings.sampler, scene.settings.seed, scene.settings.exposure
                 ),
             ),
             row("kernel", KernelModel::of(scene).to_string()),
@@ -55,6 +61,9 @@ fn describe(scene: &Scene) -> String {
     text += &format!("\nmeshes\n{}", table(2, &meshes(scene)));
     text += &format!("\nobjects\n{}", table(2, &objects(scene)));
     text += &format!("\nmaterials\n{}", table(2, &materials(scene)));
+    if !scene.textures.is_empty() {
+        text += &format!("\ntextures\n{}", table(2, &textures(scene)));
+    }
     text += &format!("\nluminaires\n{}", table(2, &luminaires(scene)));
     text += "\nwarnings\n";
     if scene.warnings.is_empty() {
@@ -72,157 +81,100 @@ fn row(name: &str, value: String) -> Vec<String> {
 
 fn sensor(scene: &Scene) -> String {
     let s = &scene.sensor;
-    format!(
-        "at {}, looking at {}, up {}, {} degrees high",
-        rgb(s.position),
-        rgb(s.target),
-        rgb(s.up),
-        match s.projection {
-            luminaire::scene::Projection::Perspective { fov } => fov,
-            luminaire::scene::Projection::Orthographic { height } => height,
-        }
-    )
+    let projection = match s.projection {
+        Projection::Perspective { fov } => format!("{fov} degrees high"),
+        Projection::Orthographic { height } => format!("orthographic, {height} high"),
+    };
+    let lens = s.lens.map_or(String::new(), |lens| {
+        let shape = match (lens.blades, lens.rotation) {
+            (0, _) => "round".into(),
+            (blades, 0.0) => format!("{blades} blades"),
+            (blades, turn) => format!("{blades} blades, turned by {turn} degrees"),
+        };
+        format!(", aperture of radius {} ({shape}), in focus at distance {}", lens.radius, lens.focus_distance)
+    });
+    format!("at {}, looking at {}, up {}, {projection}{lens}", rgb(s.position), rgb(s.target), rgb(s.up))
 }
 
-fn integrator(integrator: &Integrator) -> String {
-    match integrator {
-        Integrator::Path(estimator) => format!("path: {estimator:?}"),
-        Integrator::Simple { ambient } => format!("simple: direct light and ambient radiance {}", rgb(*ambient)),
+/// As scene files write it.
+fn filter(filter: scene::Filter) -> &'static str {
+    match filter {
+        scene::Filter::Box => "box",
+        scene::Filter::Tent => "tent",
+        scene::Filter::Gaussian => "gaussian",
+        scene::Filter::BlackmanHarris => "blackman-harris",
+    }
+}
+
+fn environment(environment: &Environment) -> String {
+    match &environment.image {
+        None => format!("radiance {} from everywhere", rgb(environment.radiance)),
+        Some(image) => format!(
+            "{}, {} x {} texels, times {}, turned by {} degrees",
+            image.name,
+            image.width,
+            image.height,
+            rgb(environment.radiance),
+            environment.rotation
+        ),
     }
 }
 
 /// Bytes of the data itself; the acceleration structures depend on the backend.
 fn memory(scene: &Scene) -> String {
-    let mesh = |m: &Mesh| size_of_val(&m.positions[..]) + size_of_val(&m.normals[..]) + size_of_val(&m.triangles[..]);
+    let mesh = |m: &Mesh| {
+        size_of_val(&m.positions[..])
+            + size_of_val(&m.normals[..])
+            + size_of_val(&m.uvs[..])
+            + size_of_val(&m.triangles[..])
+    };
     let geometry: usize = scene.meshes.iter().map(mesh).sum();
+    let images: usize = scene.textures.iter().map(|texture| size_of_val(&texture.texels[..])).sum();
     let film = u64::from(scene.film.width) * u64::from(scene.film.height) * 28;
     let size = |bytes: f64| match bytes {
         b if b < f64::from(1 << 20) => format!("{:.1} KiB", b / f64::from(1 << 10)),
         b => format!("{:.1} MiB", b / f64::from(1 << 20)),
     };
+    let images = if images > 0 { format!(", {} of textures", size(images as f64)) } else { String::new() };
     format!(
-        "{} of geometry and {} of film, besides about 100 bytes a stored triangle for the BVH",
+        "{} of geometry{images} and {} of film, besides about 100 bytes a stored triangle for the BVH",
         size(geometry as f64),
         size(film as f64)
     )
 }
 
-fn meshes(scene: &Scene) -> Vec<Vec<String>> {
-    let head = ["name", "triangles", "vertices", "normals"].map(String::from).to_vec();
-    let mesh = |m: &Mesh| {
-        let normals = if m.normals.is_empty() { "no" } else { "yes" };
-        vec![m.name.clone(), m.triangles.len().to_string(), m.positions.len().to_string(), normals.into()]
-    };
-    std::iter::once(head).chain(scene.meshes.iter().map(mesh)).collect()
-}
-
-/// More rows than anyone reads are left out.
-const MOST_OBJECTS: usize = 20;
-
-fn objects(scene: &Scene) -> Vec<Vec<String>> {
-    let mut rows = vec![["name", "mesh", "material", "transform"].map(String::from).to_vec()];
-    for object in scene.objects.iter().take(MOST_OBJECTS) {
-        let determinant = object.object_to_world.matrix3.determinant();
-        let kind = match determinant {
-            _ if object.object_to_world == glam::Affine3A::IDENTITY => "none".into(),
-            d if d < 0.0 => format!("mirrored, volume times {:.4}", -d),
-            d => format!("volume times {d:.4}"),
-        };
-        rows.push(vec![
-            object.name.clone(),
-            scene.meshes[object.mesh as usize].name.clone(),
-            object.material.map_or("of the mesh".into(), |m| scene.materials[m as usize].name.clone()),
-            kind,
-        ]);
-    }
-    if let Some(more) = scene.objects.len().checked_sub(MOST_OBJECTS + 1) {
-        rows.push(vec![format!("... and {} more", more + 1)]);
-    }
-    rows
-}
-
-fn materials(scene: &Scene) -> Vec<Vec<String>> {
-    let mut used = vec![0u64; scene.materials.len()];
-    for object in &scene.objects {
-        for triangle in &scene.meshes[object.mesh as usize].triangles {
-            used[object.material.unwrap_or(triangle.material) as usize] += 1;
-        }
-    }
-    let head = ["name", "lambert", "glossy", "exponent", "emission", "triangles"].map(String::from).to_vec();
-    let rows = scene.materials.iter().zip(used).map(|(m, used)| {
-        let exponent = if m.glossy == Vec3::ZERO { "-".into() } else { m.exponent.to_string() };
-        vec![m.name.clone(), rgb(m.lambert), rgb(m.glossy), exponent, rgb(m.emission), used.to_string()]
-    });
-    std::iter::once(head).chain(rows).collect()
-}
-
-fn luminaires(scene: &Scene) -> Vec<Vec<String>> {
-    let table = LuminaireTable::new(scene);
-    let mut rows = Vec::new();
-    let (mut triangles, mut area, mut chance) = (0u64, 0.0, 0.0);
-    let percent = |p: f64| format!("chosen {:.1} %", p * 100.0);
-    for (entry, pdf) in table.entries.iter().zip(&table.choice.pdf) {
-        match entry {
-            SampledLuminaire::Impulse(Luminaire::Point { position, intensity }) => rows.push(vec![
-                "point".into(),
-                format!("at {}", rgb(*position)),
-                format!("intensity {}", rgb(*intensity)),
-                percent(*pdf),
-            ]),
-            SampledLuminaire::Impulse(Luminaire::Infinite { direction, irradiance }) => rows.push(vec![
-                "infinite".into(),
-                format!("towards {}", rgb(*direction)),
-                format!("irradiance {}", rgb(*irradiance)),
-                percent(*pdf),
-            ]),
-            SampledLuminaire::Environment => {
-                rows.push(vec!["environment".into(), String::new(), String::new(), percent(*pdf)]);
-            }
-            SampledLuminaire::Area(triangle) => {
-                triangles += 1;
-                area += triangle.area();
-                chance += pdf;
-            }
-        }
-    }
-    if triangles > 0 {
-        let what = format!("{triangles} emissive triangles");
-        rows.push(vec!["area".into(), what, format!("total area {area:.4}"), percent(chance)]);
-    }
-    if rows.is_empty() {
-        rows.push(vec!["none: nothing in this scene emits".into()]);
-    }
-    rows
-}
-
-/// Three numbers.
-fn rgb(v: Vec3) -> String {
-    format!("({} {} {})", v.x, v.y, v.z)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use luminaire::scene::{FilmSettings, Filter, Material, Object, RenderSettings, Sensor, Triangle};
+    use glam::Vec3;
+    use luminaire::scene::{
+        Estimator, FilmSettings, Filter, Integrator, Lens, Luminaire, Maps, Material, Object, RenderSettings, Sensor,
+        Texture, Triangle,
+    };
 
     #[test]
     fn everything_is_named() {
         let emission = Vec3::new(1.0, 2.0, 3.0);
         let material = Material {
             name: "lamp".into(),
-            ambient: Vec3::ZERO,
             lambert: Vec3::splat(0.5),
-            glossy: Vec3::ZERO,
-            exponent: 1.0,
             emission,
+            reflection: Vec3::splat(0.25),
+            transmission: Vec3::splat(0.125),
+            eta: Some(1.5),
+            opacity: 0.75,
+            maps: Maps { lambert: Some(0), ..Maps::default() },
+            ..Material::default()
         };
+        let estimator = Estimator { max_bounces: Some(4), ..Estimator::default() };
         let scene = Scene {
             path: "test.obj".into(),
             meshes: vec![Mesh {
                 name: "one.obj".into(),
                 positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
-                normals: Vec::new(),
+                uvs: vec![glam::Vec2::ZERO; 3],
                 triangles: vec![Triangle { vertices: [0, 1, 2], material: 0 }],
+                ..Mesh::default()
             }],
             objects: vec![
                 Object {
@@ -234,19 +186,38 @@ mod tests {
                 22
             ],
             materials: vec![material],
+            textures: vec![Texture {
+                name: "wood.png".into(),
+                width: 1,
+                height: 1,
+                texels: vec![Default::default()],
+                clamp: true,
+            }],
             luminaires: vec![Luminaire::Point { position: Vec3::Z, intensity: Vec3::ONE }],
-            sensor: Sensor { position: Vec3::Z, target: Vec3::ZERO, up: Vec3::Y, fov: 40.0 },
-            film: FilmSettings { width: 64, height: 48, filter: Filter::Box },
-            integrator: Integrator::Path { max_bounces: Some(4) },
+            environment: Some(Environment { radiance: Vec3::splat(0.5), image: None, rotation: 0.0 }),
+            sensor: Sensor {
+                position: Vec3::Z,
+                target: Vec3::ZERO,
+                up: Vec3::Y,
+                projection: Projection::Perspective { fov: 40.0 },
+                lens: Some(Lens { radius: 0.25, focus_distance: 3.0, blades: 6, rotation: 10.0 }),
+            },
+            film: FilmSettings { width: 64, height: 48, filter: Filter::BlackmanHarris, filter_radius: 1.5 },
+            integrator: Integrator::Path(estimator),
             settings: RenderSettings::default(),
             warnings: vec!["one.obj:3: something odd".into()],
         };
         let text = describe(&scene);
         for part in [
             "22 in 22 objects; 1 stored in 1 mesh",
-            "64 x 48 pixels, box filter",
+            "64 x 48 pixels, blackman-harris filter of radius 1.5",
+            "40 degrees high, aperture of radius 0.25 (6 blades, turned by 10 degrees), in focus at distance 3",
+            "radiance (0.5 0.5 0.5) from everywhere",
+            "estimator `default`",
             "at most 4 indirect bounces",
-            "path tracer, Lambert, instances, point luminaires, area luminaires",
+            "Independent sampler",
+            "glass of index 1.5, reflection (0.25 0.25 0.25), transmission (0.125 0.125 0.125); opacity 0.75; diffuse map wood.png",
+            "wood.png  1 x 1",
             "mirrored, volume times 2.0000",
             "... and 2 more",
             "(1 2 3)",

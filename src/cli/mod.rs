@@ -1,7 +1,9 @@
 //! Arguments and the manner of speaking: results on stdout, everything else on stderr.
 
 pub mod devices;
+mod estimator;
 pub mod inspect;
+mod inspect_tables;
 mod progress;
 pub mod render;
 mod stats;
@@ -102,12 +104,8 @@ pub struct RenderOptions {
     /// Seed of the random numbers: the same seed gives the same picture [default: the scene's].
     #[arg(long, value_name = "N", allow_negative_numbers = true, help_heading = "Quality")]
     pub seed: Option<u32>,
-    /// The estimator: full light transport, or direct light and an ambient term [default: the scene's].
-    #[arg(long, value_name = "NAME", help_heading = "Quality")]
-    pub integrator: Option<IntegratorName>,
-    /// At most so many indirect bounces; 0 is direct light alone [default: the scene's].
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(..=1_000_000), help_heading = "Quality")]
-    pub max_bounces: Option<u32>,
+    #[command(flatten)]
+    pub estimator: estimator::EstimatorOptions,
 
     /// Render again whenever a shader changes (the sources are in LUMINAIRE_SHADERS, or where the program was built).
     #[cfg(feature = "shaderc")]
@@ -144,15 +142,6 @@ impl BackendName {
             BackendName::Cpu => Some(Backend::Cpu),
         }
     }
-}
-
-/// `--integrator`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub enum IntegratorName {
-    /// Emission, direct light and indirect light.
-    Path,
-    /// Emission, direct light and the ambient term.
-    Simple,
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
@@ -221,7 +210,14 @@ mod tests {
             ["--height", "65537"],
             ["--seed", "-1"],
             ["--exposure", "nan"],
-            ["--integrator", "photon"],
+            ["--integrator", "path"],
+            ["--estimator", "photon"],
+            ["--light-sampling", "some"],
+            ["--area-sampling", "some"],
+            ["--directions", "some"],
+            ["--extinction", "some"],
+            ["--albedo-threshold", "1.5"],
+            ["--sampler", "some"],
             ["--backend", "gpu"],
             ["--max-bounces", "1000001"],
         ] {

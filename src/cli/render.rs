@@ -2,11 +2,11 @@
 
 use super::progress::{Reporter, duration};
 use super::stats::{Seconds, Stats};
-use super::{IntegratorName, RenderOptions, print, tell};
+use super::{RenderOptions, print, tell};
 use luminaire::backend::{self, Backend, Opened, Request};
 use luminaire::film::Film;
 use luminaire::render::{End, Limits, Rendered, render};
-use luminaire::scene::{self, Estimator, FilmSettings, Integrator, Scene};
+use luminaire::scene::{self, FilmSettings, Scene};
 use luminaire::{Error, Result, image_io};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -40,7 +40,8 @@ pub fn run(options: &RenderOptions) -> Result<ExitCode> {
     let start = Instant::now();
     let mut scene = scene::load(&options.scene)?;
     seconds.load = start.elapsed().as_secs_f64();
-    scene.warnings.extend(apply(options, &mut scene.film, &mut scene.integrator)?);
+    resize(options, &mut scene.film);
+    change_estimator(options, &mut scene)?;
     scene.settings.seed = options.seed.unwrap_or(scene.settings.seed);
     scene.settings.exposure = options.exposure.unwrap_or(scene.settings.exposure);
     Film::check_size(scene.film.width, scene.film.height)?;
@@ -180,12 +181,7 @@ fn check_combinations(options: &RenderOptions) -> Result<()> {
             "--device chooses a Vulkan device, but --backend cpu uses none: leave one of them out".into(),
         ));
     }
-    if options.max_bounces.is_some() && options.integrator == Some(IntegratorName::Simple) {
-        return Err(Error::Usage(
-            "--max-bounces belongs to the path integrator, but --integrator is simple: leave one of them out".into(),
-        ));
-    }
-    Ok(())
+    options.estimator.check()
 }
 
 /// The pictures to write, all of them possible.
@@ -212,8 +208,8 @@ fn outputs(options: &RenderOptions) -> Result<Vec<PathBuf>> {
     Ok(outputs)
 }
 
-/// Puts the options in the place of what the scene says; gives what deserves a warning.
-fn apply(options: &RenderOptions, film: &mut FilmSettings, integrator: &mut Integrator) -> Result<Option<String>> {
+/// Puts the options in the place of the scene's film size.
+fn resize(options: &RenderOptions, film: &mut FilmSettings) {
     let FilmSettings { width, height, .. } = *film;
     let scaled = |given: u32, this: u32, other: u32| {
         (f64::from(given) * f64::from(this) / f64::from(other)).round().clamp(1.0, 65536.0) as u32
@@ -224,29 +220,20 @@ fn apply(options: &RenderOptions, film: &mut FilmSettings, integrator: &mut Inte
         (None, Some(h)) => (scaled(h, width, height), h),
         (Some(w), Some(h)) => (w, h),
     };
-    let mut warning = None;
-    match (options.integrator, *integrator) {
-        (Some(IntegratorName::Simple), Integrator::Path(_)) => {
-            *integrator = Integrator::Simple { ambient: glam::Vec3::ZERO };
-            warning =
-                Some("the scene gives no ambient radiance: the simple integrator shows direct light alone".into());
-        }
-        (Some(IntegratorName::Path), Integrator::Simple { .. }) => *integrator = Integrator::Path(Estimator::default()),
-        _ => {}
+}
+
+/// Puts the options in the place of the scene's estimator and sampler.
+fn change_estimator(options: &RenderOptions, scene: &mut Scene) -> Result<()> {
+    // Whether the picture can only be black depends on the estimator.
+    let dark = scene.dark_because();
+    scene.warnings.extend(options.estimator.apply(&mut scene.integrator)?);
+    scene.settings.sampler = options.estimator.sampler.unwrap_or(scene.settings.sampler);
+    let now = scene.dark_because();
+    if now != dark {
+        scene.warnings.retain(|warning| Some(warning) != dark.as_ref());
+        scene.warnings.extend(now);
     }
-    if let Some(limit) = options.max_bounces {
-        match integrator {
-            Integrator::Path(estimator) => estimator.max_bounces = Some(limit),
-            Integrator::Simple { .. } => {
-                return Err(Error::Usage(
-                    "--max-bounces belongs to the path integrator, but the scene asks for the simple one: \
-                     add --integrator path"
-                        .into(),
-                ));
-            }
-        }
-    }
-    Ok(warning)
+    Ok(())
 }
 
 /// Ctrl-C and SIGTERM: the first ends the render at the next batch, a second (or one with nothing to write yet) the process.
@@ -283,34 +270,18 @@ mod tests {
         }
     }
 
-    fn applied(words: &[&str], integrator: Integrator) -> Result<(u32, u32, Integrator, bool)> {
-        let mut film = FilmSettings { width: 300, height: 200, filter: scene::Filter::Box };
-        let mut integrator = integrator;
-        let warning = apply(&options(words), &mut film, &mut integrator)?;
-        Ok((film.width, film.height, integrator, warning.is_some()))
-    }
-
     #[test]
     fn one_side_keeps_the_aspect_ratio() {
-        let path = Integrator::Path { max_bounces: None };
-        let size = |words: &[&str]| applied(words, path).map(|(w, h, ..)| (w, h)).unwrap();
+        let size = |words: &[&str]| {
+            let mut film = FilmSettings { width: 300, height: 200, filter: scene::Filter::Box, filter_radius: 0.5 };
+            resize(&options(words), &mut film);
+            (film.width, film.height)
+        };
         assert_eq!(size(&[]), (300, 200));
         assert_eq!(size(&["--width", "150"]), (150, 100));
         assert_eq!(size(&["--height", "1"]), (2, 1));
         assert_eq!(size(&["--width", "1"]), (1, 1));
         assert_eq!(size(&["--width", "7", "--height", "9"]), (7, 9));
-    }
-
-    #[test]
-    fn integrators() {
-        let path = Integrator::Path { max_bounces: Some(3) };
-        let simple = Integrator::Simple { ambient: glam::Vec3::ONE };
-        assert_eq!(applied(&["--max-bounces", "9"], path).unwrap().2, Integrator::Path { max_bounces: Some(9) });
-        assert_eq!(applied(&["--integrator", "path"], path).unwrap().2, path);
-        assert_eq!(applied(&["--integrator", "path"], simple).unwrap().2, Integrator::Path { max_bounces: None });
-        assert_eq!(applied(&["--integrator", "simple"], simple).unwrap().2, simple);
-        assert!(applied(&["--integrator", "simple"], path).unwrap().3, "a warning about the ambient term");
-        assert_eq!(applied(&["--max-bounces", "1"], simple).unwrap_err().exit_code(), 2);
     }
 
     #[test]

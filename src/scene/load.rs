@@ -128,7 +128,8 @@ impl Loader {
         self.meshes.push(mesh);
         self.named.push(named);
         let at = |line| format!("{}:{line}", path.display());
-        let without_uv = without_uv.iter().map(|(slot, line)| WithoutUv { material: material_of[*slot], at: at(*line) });
+        let without_uv =
+            without_uv.iter().map(|(slot, line)| WithoutUv { material: material_of[*slot], at: at(*line) });
         self.without_uv.push(without_uv.collect());
         self.mesh_files.insert(identity, index);
         Ok(index)

@@ -151,7 +151,8 @@ mod tests {
 
     #[test]
     fn what_is_missing_is_said() {
-        for (rest, words) in [("", "file name"), ("-clamp on", "file name"), ("-mm 1 a.png", "two numbers"), ("-o a.png", "-o")]
+        for (rest, words) in
+            [("", "file name"), ("-clamp on", "file name"), ("-mm 1 a.png", "two numbers"), ("-o a.png", "-o")]
         {
             let error = parse(rest, Path::new(""), String::new()).expect_err(rest);
             assert!(error.contains(words), "{rest}: {error}");

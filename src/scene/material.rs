@@ -168,19 +168,18 @@ impl Draft {
     /// Maps of numbers that are zero are not even looked for.
     fn load_maps(&self, material: &mut Material, textures: &mut Textures, warnings: &mut Vec<String>) {
         let wanted = |colour: Vec3, map: &MapDraft| map.file().filter(|_| colour != Vec3::ZERO).cloned();
-        let visible = |textures: &mut Textures, map: Option<MapFile>, warnings: &mut Vec<String>| {
-            let map = map?;
-            Some(textures.colour(&map, warnings).unwrap_or_else(|| textures.fallback()))
+        let mut visible = |colour: Vec3, map: &MapDraft, warnings: &mut Vec<String>| {
+            wanted(colour, map).map(|map| textures.visible(&map, warnings))
         };
-        material.maps.lambert = visible(textures, wanted(material.lambert, &self.maps.diffuse), warnings);
-        material.maps.emission = visible(textures, wanted(material.emission, &self.maps.emission), warnings);
+        material.maps.lambert = visible(material.lambert, &self.maps.diffuse, warnings);
+        material.maps.emission = visible(material.emission, &self.maps.emission, warnings);
         material.maps.ambient = if self.ambient.is_none() && self.maps.ambient.file().is_none() {
             material.maps.lambert
         } else {
-            visible(textures, wanted(material.ambient, &self.maps.ambient), warnings)
+            visible(material.ambient, &self.maps.ambient, warnings)
         };
         let glossy = wanted(material.glossy, &self.maps.glossy);
-        material.maps.glossy = glossy.and_then(|map| textures.colour(&map, warnings));
+        material.maps.glossy = glossy.and_then(|map| textures.optional(&map, warnings));
         match &self.maps.opacity {
             MapDraft::File(map) if material.opacity > 0.0 => material.maps.opacity = textures.opacity(map, warnings),
             MapDraft::File(_) | MapDraft::Removed => {}

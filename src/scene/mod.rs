@@ -28,7 +28,9 @@ mod toml_values;
 
 pub use crate::sampling::Sampler;
 pub use environment::EnvironmentDistribution;
-pub use estimator::{AreaSampling, Directions, Estimator, EstimatorChanges, Extinction, Integrator, LightSampling, PRESETS};
+pub use estimator::{
+    AreaSampling, Directions, Estimator, EstimatorChanges, Extinction, Integrator, LightSampling, PRESETS,
+};
 pub use load::load;
 pub(crate) use luminaire::widen;
 pub use luminaire::{EmissiveTriangle, LuminaireTable, SampledLuminaire};

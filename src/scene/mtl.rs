@@ -213,19 +213,22 @@ impl Current {
         let black = |colour: Option<Vec3>| colour.is_none_or(|colour| colour == Vec3::ZERO);
         match self.illum {
             Some(0 | 1) => draft.glossy = None,
-            Some(model @ (3 | 5 | 8)) if draft.exponent.is_none_or(|ns| ns >= MIRROR_EXPONENT) && !black(draft.glossy) => {
+            Some(model @ (3 | 5 | 8))
+                if draft.exponent.is_none_or(|ns| ns >= MIRROR_EXPONENT) && !black(draft.glossy) =>
+            {
                 draft.reflection = draft.glossy.take();
                 draft.eta = self.refraction.filter(|ni| model == 5 && *ni > 1.0);
                 self.unused_map(|draft| &mut draft.maps.glossy, "map_Ks of a mirror");
             }
             Some(4 | 6 | 7 | 9) => {
                 draft.reflection = Some(if black(draft.glossy) { Vec3::ONE } else { draft.glossy.unwrap_or_default() });
-                draft.transmission =
-                    Some(if black(self.filter) { Vec3::ONE } else { self.filter.unwrap_or_default() });
+                draft.transmission = Some(if black(self.filter) { Vec3::ONE } else { self.filter.unwrap_or_default() });
                 draft.glossy = None;
                 draft.eta = self.refraction.or(Some(DEFAULT_ETA));
                 if self.refraction.is_none() {
-                    draft.notes.push(format!("{at} is glass without an index of refraction (Ni); {DEFAULT_ETA} is used"));
+                    draft
+                        .notes
+                        .push(format!("{at} is glass without an index of refraction (Ni); {DEFAULT_ETA} is used"));
                 }
                 self.dissolve = None;
                 self.transparency = None;
@@ -238,6 +241,11 @@ impl Current {
             self.draft.maps.glossy = MapDraft::Unstated;
         }
         // `d` and `Tr` say the same in opposite ways, and exporters disagree on `Tr`: `d` wins where both are given.
+        if let (Some(d), Some(tr)) = (self.dissolve, self.transparency)
+            && (d + tr - 1.0).abs() > 1e-3
+        {
+            self.draft.notes.push(format!("{at}: d {d} and Tr {tr} contradict each other; d counts"));
+        }
         let opacity = self.dissolve.or(self.transparency.map(|tr| 1.0 - tr));
         self.draft.opacity = opacity.map(|d| d.clamp(0.0, 1.0));
     }

@@ -86,9 +86,8 @@ impl Faces {
         let mut normals = vec![None; self.corners.len()];
         for incidents in self.points(positions).filter(|incidents| incidents.len() <= MOST_FACES_AT_A_POINT) {
             for this in &incidents {
-                let near = |other: &&Incident| {
-                    other.corner == this.corner || other.normal.dot(this.normal) > least_cosine
-                };
+                let near =
+                    |other: &&Incident| other.corner == this.corner || other.normal.dot(this.normal) > least_cosine;
                 let sum: DVec3 = incidents.iter().filter(near).map(|other| other.angle * other.normal).sum();
                 normals[this.corner] = sum.try_normalize().map(DVec3::as_vec3);
             }
@@ -161,9 +160,12 @@ impl Faces {
             for corner in 0..corners.len() {
                 // Adding 0 makes -0 the same as 0.
                 let bits = (at(corner) + Vec3::ZERO).to_array().map(f32::to_bits);
-                let (before, after) = (point(corner + corners.len() - 1), point(corner + 1));
-                let (a, b) = (before - point(corner), after - point(corner));
-                let angle = a.cross(b).length().atan2(a.dot(b));
+                // Some corners of a face may lie on each other, at the pole of a sphere for example.
+                let here = point(corner);
+                let count = corners.len();
+                let before = (1..count).map(|k| point(corner + count - k) - here).find(|edge| *edge != DVec3::ZERO);
+                let after = (1..count).map(|k| point(corner + k) - here).find(|edge| *edge != DVec3::ZERO);
+                let angle = before.zip(after).map_or(0.0, |(a, b)| a.cross(b).length().atan2(a.dot(b)));
                 let incident =
                     Incident { corner: first + corner, smoothing_group: face.smoothing_group, normal, angle };
                 match index.get(&bits) {

@@ -111,19 +111,24 @@ fn without_case(folder: &Path, name: &str) -> Option<PathBuf> {
 }
 
 impl Textures {
-    /// The texture of a map that multiplies a colour; its alpha is the image's own. None if the file cannot be used, which is
-    /// a warning.
-    pub(super) fn colour(&mut self, map: &MapFile, warnings: &mut Vec<String>) -> Option<u32> {
-        self.load(map, None, warnings)
+    /// The texture of a map that multiplies a colour; its alpha is the image's own. If the file cannot be used, which is a
+    /// warning, a checkerboard that nobody overlooks.
+    pub(super) fn visible(&mut self, map: &MapFile, warnings: &mut Vec<String>) -> u32 {
+        let texture = self.load(map, None, "a checkerboard of magenta and black shows instead", warnings);
+        texture.unwrap_or_else(|| self.fallback())
+    }
+
+    /// The same, but none if the file cannot be used.
+    pub(super) fn optional(&mut self, map: &MapFile, warnings: &mut Vec<String>) -> Option<u32> {
+        self.load(map, None, "there is no map then", warnings)
     }
 
     /// The texture of a map whose alpha is an opacity. None if the file cannot be used, which is a warning.
     pub(super) fn opacity(&mut self, map: &MapFile, warnings: &mut Vec<String>) -> Option<u32> {
-        self.load(map, Some(map.channel), warnings)
+        self.load(map, Some(map.channel), "there is no map then", warnings)
     }
 
-    /// What stands in for a texture that is missing: a checkerboard that nobody overlooks.
-    pub(super) fn fallback(&mut self) -> u32 {
+    fn fallback(&mut self) -> u32 {
         const SIDE: u32 = 16;
         *self.fallback.get_or_insert_with(|| {
             let (one, zero) = (f16::ONE, f16::ZERO);
@@ -136,11 +141,18 @@ impl Textures {
         })
     }
 
-    fn load(&mut self, map: &MapFile, scalar: Option<Channel>, warnings: &mut Vec<String>) -> Option<u32> {
+    /// `instead` says what happens if the file cannot be used.
+    fn load(
+        &mut self,
+        map: &MapFile,
+        scalar: Option<Channel>,
+        instead: &str,
+        warnings: &mut Vec<String>,
+    ) -> Option<u32> {
         let (path, guess) = match map.find() {
             Ok(found) => found,
             Err(reason) => {
-                self.refuse(&map.folder.join(&map.names[0]), map, &reason, warnings);
+                self.refuse(&map.folder.join(&map.names[0]), map, &format!("{reason}; {instead}"), warnings);
                 return None;
             }
         };
@@ -163,7 +175,7 @@ impl Textures {
                 Some(self.loaded.len() as u32 - 1)
             }
             Err(reason) => {
-                self.refuse(&path, map, &reason, warnings);
+                self.refuse(&path, map, &format!("{reason}; {instead}"), warnings);
                 None
             }
         };

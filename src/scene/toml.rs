@@ -63,6 +63,10 @@ impl File<'_> {
         }
         let sensor = file.sensor.map(|table| self.sensor(&table)).transpose()?;
         let mut loader = Loader::new(self.materials(&file.material)?);
+        let environment = match &file.environment {
+            None => None,
+            Some(table) => self.environment(table, &mut loader.warnings)?,
+        };
         let mut objects = Vec::new();
         for table in &file.object {
             objects.push(self.object(table, &mut loader)?);
@@ -76,10 +80,6 @@ impl File<'_> {
             seed: file.render.seed.unwrap_or(defaults.seed),
             exposure: file.render.exposure.map_or(defaults.exposure, |exposure| exposure.0),
             sampler: file.render.sampler.unwrap_or(defaults.sampler),
-        };
-        let environment = match &file.environment {
-            None => None,
-            Some(table) => self.environment(table, &mut loader.warnings)?,
         };
         let (materials, textures) = loader.finish_materials(&objects);
         let mut scene = Scene {

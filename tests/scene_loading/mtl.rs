@@ -1,0 +1,174 @@
+//! MTL files.
+
+use super::*;
+use glam::Vec3;
+
+#[test]
+fn every_modelled_statement_is_read() {
+    let scene = with_mtl("newmtl m\nKa .1 .2 .3\nKd .4 .3 .2 # c\nKs 0.5\nNs 96\nKe 7 8 9\nillum 2\nNi 1.5\nd 1\n")
+        .load("mesh.obj");
+    let expected = Material {
+        name: "m".into(),
+        ambient: Vec3::new(0.1, 0.2, 0.3),
+        lambert: Vec3::new(0.4, 0.3, 0.2),
+        glossy: Vec3::splat(0.5),
+        exponent: 96.0,
+        emission: Vec3::new(7.0, 8.0, 9.0),
+        ..Material::default()
+    };
+    assert_eq!(first_material(&scene), &expected);
+    assert_eq!(scene.warnings, Vec::<String>::new());
+}
+
+#[test]
+fn what_is_absent_has_a_default() {
+    let grey = with_mtl("newmtl m\n").load("mesh.obj");
+    assert_eq!(first_material(&grey).lambert, Vec3::splat(0.8));
+    assert_eq!(first_material(&grey).ambient, Vec3::splat(0.8));
+    let lamp = with_mtl("newmtl m\nKe 1 1 1\n").load("mesh.obj");
+    assert_eq!(first_material(&lamp).lambert, Vec3::ZERO);
+    let glossy = with_mtl("newmtl m\nKs 1 1 1\n").load("mesh.obj");
+    assert_eq!((first_material(&glossy).lambert, first_material(&glossy).exponent), (Vec3::ZERO, 10.0));
+    warned(&glossy, &["`m`", "no exponent"]);
+}
+
+#[test]
+fn highlights_need_illum_2() {
+    for (illum, glossy) in [("", 0.2), ("illum 0", 0.0), ("illum 1", 0.0), ("illum 2", 0.2)] {
+        let scene = with_mtl(format!("newmtl m\nKd .5 .5 .5\nKs .2 .2 .2\nNs 5\n{illum}\n")).load("mesh.obj");
+        assert_eq!(first_material(&scene).glossy, Vec3::splat(glossy), "{illum}");
+    }
+}
+
+#[test]
+fn albedos_above_one_are_scaled_down() {
+    let scene = with_mtl("newmtl m\nKd 0.9 0.2 0.2\nKs 0.6 0.6 0.6\nNs 10\nillum 2\n").load("mesh.obj");
+    let material = first_material(&scene);
+    assert!((material.lambert + material.glossy).max_element() <= 1.0);
+    assert!((material.lambert.x - 0.6).abs() < 1e-6 && (material.glossy.x - 0.4).abs() < 1e-6, "{material:?}");
+    warned(&scene, &["`m`", "create energy", "0.6667"]);
+}
+
+#[test]
+fn a_bad_mtl_is_a_warning_with_its_line() {
+    let text = "Kd 1 1 1\nnewmtl m\nKd 0.1 x 0.3\nKs 0.1 0.2\nNs -3\nKa -1 0 0\nKe nan 0 0\nillum two\nfoo 1\nNs inf\n";
+    let scene = with_mtl(text).load("mesh.obj");
+    assert_eq!(first_material(&scene).lambert, Vec3::splat(0.8));
+    assert_eq!(first_material(&scene).ambient, Vec3::ZERO);
+    for (line, words) in [
+        (1, "newmtl"),
+        (3, "`0.1 x 0.3`"),
+        (4, "`0.1 0.2`"),
+        (5, "Ns"),
+        (6, "negative"),
+        (7, "Ke"),
+        (8, "illum"),
+        (9, "`foo`"),
+        (10, "Ns"),
+    ] {
+        warned(&scene, &[&format!("mesh.mtl:{line}:"), words]);
+    }
+}
+
+#[test]
+fn what_is_not_modelled_is_one_warning_for_each_material_in_use() {
+    let feature = "bump b.png\nmap_Ns c.png\nbump b.png\nPr 1\nd -halo 0.5\nmap_Kd -o 1 0 0 a.png\n";
+    let scene = with_mtl(format!("newmtl m\n{feature}newmtl unused\n{feature}")).load("mesh.obj");
+    let warnings: Vec<_> = scene.warnings.iter().filter(|warning| warning.contains("not modelled")).collect();
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
+    warned(&scene, &["`m`", "bump, map_Ns, Pr, d -halo, map_Kd -o"]);
+    assert_eq!(first_material(&scene).opacity, 0.5);
+}
+
+/// The first material after these statements.
+fn read(statements: &str) -> (Material, Vec<String>) {
+    let scene = with_mtl(format!("newmtl m\n{statements}\n")).load("mesh.obj");
+    let light = |warning: &String| warning.contains("key light");
+    (first_material(&scene).clone(), scene.warnings.into_iter().filter(|warning| !light(warning)).collect())
+}
+
+#[test]
+fn illum_3_5_and_8_are_mirrors_where_they_are_sharp() {
+    let ks = Vec3::new(0.25, 0.5, 0.75);
+    for (illum, eta) in [("illum 3", None), ("illum 8", None), ("illum 5", Some(1.75))] {
+        for sharp in ["", "Ns 1000\n"] {
+            let (m, warnings) = read(&format!("Kd .1 .1 .1\nKs .25 .5 .75\nNi 1.75\n{sharp}{illum}"));
+            assert_eq!((m.reflection, m.glossy, m.eta), (ks, Vec3::ZERO, eta), "{illum} {sharp}");
+            assert_eq!((m.lambert, m.transmission), (Vec3::splat(0.1), Vec3::ZERO));
+            assert!(warnings.is_empty(), "{warnings:?}");
+        }
+        let (m, _) = read(&format!("Kd .1 .1 .1\nKs .25 .5 .75\nNs 999\n{illum}"));
+        assert_eq!((m.reflection, m.glossy, m.exponent), (Vec3::ZERO, ks, 999.0), "{illum}");
+    }
+    for ni in ["", "Ni 1\n", "Ni 0\n"] {
+        assert_eq!(read(&format!("Ks 1 1 1\n{ni}illum 5")).0.eta, None, "{ni}");
+    }
+    assert_eq!(read("Ks 1 1 1\nillum 3").0.lambert, Vec3::ZERO, "a mirror alone is not grey");
+}
+
+#[test]
+fn illum_4_6_7_and_9_are_glass() {
+    for illum in [4, 6, 7, 9] {
+        let (m, warnings) = read(&format!("Ks .5 .5 .5\nTf .1 .2 .3\nNi 1\nNs 3\nd 0.25\nTr 0.5\nillum {illum}"));
+        assert_eq!((m.reflection, m.transmission), (Vec3::splat(0.5), Vec3::new(0.1, 0.2, 0.3)));
+        assert_eq!((m.eta, m.opacity, m.glossy, m.lambert), (Some(1.0), 1.0, Vec3::ZERO, Vec3::ZERO));
+        assert!(warnings.is_empty(), "{warnings:?}");
+    }
+    for black in ["", "Ks 0 0 0\nTf 0 0 0\n"] {
+        let (m, warnings) = read(&format!("{black}illum 7"));
+        assert_eq!((m.reflection, m.transmission, m.eta), (Vec3::ONE, Vec3::ONE, Some(1.5)));
+        assert!(warnings.len() == 1 && warnings[0].contains("Ni"), "{warnings:?}");
+    }
+    let (m, warnings) = read("Kd .5 .5 .5\nNi 1.5\nillum 7");
+    assert!((m.lambert.x - 1.0 / 3.0).abs() < 1e-6 && (m.transmission.x - 2.0 / 3.0).abs() < 1e-6, "{m:?}");
+    assert!(warnings[0].contains("create energy"), "{warnings:?}");
+}
+
+#[test]
+fn transparency_is_opacity() {
+    for (statements, opacity) in [
+        ("d 0.25", 0.25),
+        ("d 7", 1.0),
+        ("d -1", 0.0),
+        ("Tr 0.25", 0.75),
+        ("d 0.5\nTr 0.5", 0.5),
+        ("Tr 0\nd 0.5", 0.5),
+        ("d 0.5\nillum 10", 0.5),
+        ("d 0.5\nTf 1 0 0\nillum 2", 0.5),
+        ("", 1.0),
+    ] {
+        let (m, _) = read(statements);
+        assert_eq!((m.opacity, m.transmission, m.eta), (opacity, Vec3::ZERO, None), "{statements}");
+    }
+    assert!(read("d 0").1.iter().any(|warning| warning.contains("cannot be seen")));
+    assert!(read("Tr 0\nd 0.5").1.iter().any(|warning| warning.contains("contradict")));
+    assert!(read("Tf 1 1 1\nillum 2\nd 0.5\nTr 0.5").1.is_empty());
+    assert!(read("Tf xyz 1 1 1").1[0].contains("Tf xyz"));
+    assert!(read("Tf spectral a.rfl 1").1[0].contains("Tf spectral"));
+    assert!(read("illum 11").1[0].contains("0 to 10"));
+}
+
+#[test]
+fn a_missing_mtl_and_unknown_materials_fall_back() {
+    let scene = obj(format!("mtllib no.mtl\nusemtl a\n{TRIANGLE}usemtl b\nf 1 2 3\nf 3 2 1\n")).load("mesh.obj");
+    assert_eq!(first_material(&scene).name, "default");
+    assert_eq!(first_material(&scene).lambert, Vec3::splat(0.8));
+    warned(&scene, &["mesh.obj:1", "no.mtl", "No such file"]);
+    warned(&scene, &["mesh.obj:2", "`a`, `b`", "`default`"]);
+    assert_eq!(scene.warnings.iter().filter(|warning| warning.contains("no MTL file")).count(), 1);
+}
+
+#[test]
+fn names_of_mtl_files_and_materials_may_hold_blanks() {
+    let text = format!("mtllib one file.mtl sub\\two.mtl\nusemtl  a  b \n{TRIANGLE}usemtl c\nf 1 2 3\n");
+    let scene = obj(text)
+        .with("one file.mtl", "newmtl a  b\nKd .1 .1 .1\n")
+        .with("sub/two.mtl", "newmtl c\nKd .2 .2 .2\n")
+        .load("mesh.obj");
+    let albedos: Vec<f32> = scene.meshes[0]
+        .triangles
+        .iter()
+        .map(|triangle| scene.material_of(&scene.objects[0], triangle).lambert.x)
+        .collect();
+    assert_eq!(albedos, [0.1, 0.2]);
+}

@@ -1,0 +1,196 @@
+//! Scene files: how the scene is seen and rendered.
+
+use super::*;
+use glam::Vec3;
+use luminaire::scene::{
+    AreaSampling, Directions, Environment, Estimator, Extinction, Filter, Integrator, Lens, LightSampling, PRESETS,
+    Projection, Sampler,
+};
+
+const OBJECT: &str = "[[object]]\nmesh = \"mesh.obj\"\n";
+
+/// A scene file of these tables and the triangle.
+fn tables(text: &str) -> Scene {
+    obj(TRIANGLE).with("scene.toml", format!("{OBJECT}{LIGHT}{text}")).load("scene.toml")
+}
+
+#[test]
+fn sensors_are_perspective_or_orthographic() {
+    let sensor = |rest: &str| tables(&format!("[sensor]\nposition = [0, 0, 5]\ntarget = [0, 0, 1]\n{rest}")).sensor;
+    assert_eq!(sensor("fov = 33\n").projection, Projection::Perspective { fov: 33.0 });
+    assert_eq!(sensor("kind = \"perspective\"\nfov = 33\n").projection, Projection::Perspective { fov: 33.0 });
+    let orthographic = sensor("kind = \"orthographic\"\nheight = 2.5\n");
+    assert_eq!((orthographic.projection, orthographic.lens), (Projection::Orthographic { height: 2.5 }, None));
+    let lens = sensor("fov = 33\naperture = 0.5\n").lens;
+    assert_eq!(
+        lens,
+        Some(Lens { radius: 0.5, focus_distance: 4.0, blades: 0, rotation: 0.0 }),
+        "focused on the target"
+    );
+    let lens = sensor("fov = 33\naperture = 0.5\nfocus_distance = 7\nblades = 6\nblade_rotation = -15\n").lens;
+    assert_eq!(lens, Some(Lens { radius: 0.5, focus_distance: 7.0, blades: 6, rotation: -15.0 }));
+    assert_eq!(sensor("fov = 33\naperture = 0\nblades = 6\n").lens, None, "a closed aperture is a pinhole");
+}
+
+#[test]
+fn sensors_that_make_no_sense() {
+    let at = |rest: &str| format!("[sensor]\nposition = [0, 0, 5]\ntarget = [0, 0, 1]\n{rest}");
+    toml_fails(&at(""), (1, 1), &["`fov`"]);
+    toml_fails(&at("kind = \"orthographic\"\n"), (1, 1), &["`height`"]);
+    toml_fails(&at("fov = 3\nheight = 2\n"), (5, 10), &["orthographic"]);
+    toml_fails(&at("kind = \"orthographic\"\nheight = 2\nfov = 3\n"), (6, 7), &["perspective"]);
+    toml_fails(&at("kind = \"fisheye\"\n"), (4, 8), &["fisheye", "orthographic"]);
+    toml_fails(&at("kind = \"orthographic\"\nheight = 0\n"), (5, 10), &["above 0"]);
+    toml_fails(&at("kind = \"orthographic\"\nheight = 1\naperture = 1\n"), (6, 12), &["no lens"]);
+    toml_fails(&at("fov = 3\naperture = -1\n"), (5, 12), &["at least 0"]);
+    toml_fails(&at("fov = 3\naperture = 1\nfocus_distance = 0\n"), (6, 18), &["above 0"]);
+    toml_fails(&at("fov = 3\naperture = 1\nblades = 2\n"), (6, 10), &["3 to 64"]);
+    for key in ["focus_distance = 1", "blades = 5", "blade_rotation = 5"] {
+        let column = key.find('=').expect("a key and a value") + 3;
+        toml_fails(&at(&format!("fov = 3\n{key}\n")), (5, column), &["aperture"]);
+    }
+}
+
+#[test]
+fn filters_have_a_radius() {
+    for (text, filter, radius) in [
+        ("", Filter::Box, 0.5),
+        ("filter = \"box\"\n", Filter::Box, 0.5),
+        ("filter = \"tent\"\n", Filter::Tent, 1.0),
+        ("filter = \"gaussian\"\nfilter_radius = 2.5\n", Filter::Gaussian, 2.5),
+        ("filter = \"blackman-harris\"\n", Filter::BlackmanHarris, 1.5),
+    ] {
+        let film = tables(&format!("[film]\n{text}")).film;
+        assert_eq!((film.filter, film.filter_radius), (filter, radius), "{text}");
+    }
+    toml_fails("[film]\nfilter_radius = 0\n", (2, 17), &["above 0"]);
+    toml_fails("[film]\nfilter_radius = 65\n", (2, 17), &["at most 64"]);
+}
+
+#[test]
+fn estimators_by_name_and_by_parts() {
+    let integrator = |text: &str| tables(&format!("[integrator]\n{text}")).integrator;
+    let path = |text: &str| match integrator(text) {
+        Integrator::Path(estimator) => estimator,
+        simple => panic!("{simple:?}"),
+    };
+    assert_eq!(path(""), Estimator::default());
+    assert_eq!(path("kind = \"path\"\nestimator = \"default\"\n"), Estimator::default());
+    for (name, estimator) in PRESETS {
+        assert_eq!(path(&format!("estimator = \"{name}\"\n")), estimator, "{name}");
+    }
+    let parts = "light_sampling = \"direct\"\narea_sampling = \"area\"\ndirections = \"uniform\"\nextinction = \"off\"\n\
+                 albedo_threshold = 0.01\nmax_bounces = 3\n";
+    let expected = Estimator {
+        light_sampling: LightSampling::Direct,
+        area_sampling: AreaSampling::Area,
+        directions: Directions::Uniform,
+        extinction: Extinction::Off,
+        albedo_threshold: Some(0.01),
+        max_bounces: Some(3),
+    };
+    assert_eq!(path(parts), expected);
+    let cosine = Estimator::preset("cosine").expect("a preset");
+    let mixed = path("estimator = \"cosine\"\nlight_sampling = \"mis\"\n");
+    assert_eq!(mixed, Estimator { light_sampling: LightSampling::Mis, ..cosine });
+    for simple in ["kind = \"simple\"\n", "estimator = \"simple\"\n", "kind = \"simple\"\nestimator = \"simple\"\n"] {
+        let ambient = integrator(&format!("{simple}ambient = [1, 2, 3]\n"));
+        assert_eq!(ambient, Integrator::Simple { ambient: Vec3::new(1.0, 2.0, 3.0) }, "{simple}");
+    }
+}
+
+#[test]
+fn estimators_that_make_no_sense() {
+    let fails = |text: &str, at, words: &[&str]| toml_fails(&format!("[integrator]\n{text}\n"), at, words);
+    fails("estimator = \"photon\"", (2, 13), &["`photon`", "`simple`", "`literal-extinction`"]);
+    fails("light_sampling = \"some\"", (2, 18), &["some", "mis"]);
+    fails("extinction = \"off\"", (2, 14), &["max_bounces"]);
+    fails("albedo_threshold = 2", (2, 20), &["from 0 to 1"]);
+    fails("kind = \"simple\"\nestimator = \"cosine\"", (3, 13), &["contradicts"]);
+    fails("kind = \"path\"\nestimator = \"simple\"", (3, 13), &["contradicts"]);
+    fails("estimator = \"simple\"\ndirections = \"uniform\"", (3, 14), &["`directions`", "simple"]);
+    fails("ambient = [1, 1, 1]", (2, 11), &["simple"]);
+}
+
+#[test]
+fn samplers_are_named() {
+    assert_eq!(tables("[render]\nsampler = \"independent\"\n").settings.sampler, Sampler::Independent);
+    toml_fails("[render]\nsampler = \"dice\"\n", (2, 11), &["dice", "independent"]);
+}
+
+/// A scene without luminaires but with these tables.
+fn dark(text: &str) -> Folder {
+    obj(TRIANGLE).with("scene.toml", format!("{SENSOR}{OBJECT}{text}"))
+}
+
+fn exr(path: &Path, texels: &[[f32; 3]], width: u32) {
+    let image = image::Rgb32FImage::from_raw(width, texels.len() as u32 / width, texels.concat()).expect("a size");
+    image.save(path).expect("an EXR");
+}
+
+#[test]
+fn an_environment_lights_a_scene() {
+    let constant = dark("[environment]\nradiance = [1, 2, 3]\n").load("scene.toml");
+    let expected = Environment { radiance: Vec3::new(1.0, 2.0, 3.0), image: None, rotation: 0.0 };
+    assert_eq!((constant.environment, constant.warnings), (Some(expected), vec![]), "no warning that it is black");
+
+    let folder = dark("[environment]\nimage = \"sub/sky.exr\"\nrotate = -90\n").with("sub/x", "");
+    exr(&folder.path("sub/sky.exr"), &[[1.0, 2.0, 3.0], [0.0, 7e6, 0.5]], 2);
+    let scene = folder.load("scene.toml");
+    assert_eq!(scene.warnings, Vec::<String>::new());
+    let environment = scene.environment.expect("an environment");
+    assert_eq!((environment.radiance, environment.rotation), (Vec3::ONE, -90.0));
+    let image = environment.image.expect("an image");
+    assert_eq!((image.name.as_str(), image.width, image.height), ("sky.exr", 2, 1));
+    assert_eq!(image.texels, [Vec3::new(1.0, 2.0, 3.0), Vec3::new(0.0, 7e6, 0.5)], "beyond half precision");
+}
+
+#[test]
+fn an_environment_of_eight_bits_is_srgb() {
+    let folder = dark("[environment]\nradiance = [2, 2, 2]\nimage = \"sky.png\"\n");
+    image::RgbImage::from_raw(1, 1, vec![255, 188, 0]).expect("a size").save(folder.path("sky.png")).expect("a PNG");
+    let environment = folder.load("scene.toml").environment.expect("an environment");
+    let texel = environment.image.expect("an image").texels[0];
+    assert!(texel.distance(Vec3::new(1.0, 0.502_886, 0.0)) < 1e-5, "{texel}");
+    assert_eq!(environment.radiance, Vec3::splat(2.0));
+}
+
+#[test]
+fn odd_environments_are_repaired_or_dropped() {
+    let sky = |texels: &[[f32; 3]]| {
+        let folder = dark("[environment]\nimage = \"sky.exr\"\n");
+        exr(&folder.path("sky.exr"), texels, 1);
+        folder.load("scene.toml")
+    };
+    let odd = sky(&[[f32::NAN, 1.0, -2.0], [4.0, f32::INFINITY, 0.0]]);
+    let texels = odd.environment.clone().expect("an environment").image.expect("an image").texels;
+    assert_eq!(texels, [Vec3::new(0.0, 1.0, 0.0), Vec3::new(4.0, 4.0, 0.0)]);
+    warned(&odd, &["sky.exr", "1 texels", "negative or NaN"]);
+    warned(&odd, &["sky.exr", "infinite"]);
+    let black = sky(&[[0.0; 3], [-1.0; 3]]);
+    assert_eq!(black.environment, None);
+    warned(&black, &["sky.exr", "black"]);
+    warned(&black, &["picture will be black"]);
+    let off = dark("[environment]\nradiance = [0, 0, 0]\n").load("scene.toml");
+    assert_eq!(off.environment, None);
+    warned(&off, &["radiance is 0"]);
+}
+
+#[test]
+fn environments_that_make_no_sense() {
+    toml_fails("[environment]\n", (1, 1), &["`radiance`", "`image`"]);
+    toml_fails("[environment]\nradiance = [1, 1, 1]\nrotate = 3\n", (3, 10), &["`image`"]);
+    toml_fails("[environment]\nradiance = [1, -1, 1]\n", (2, 12), &["negative"]);
+    toml_fails(&format!("{OBJECT}[environment]\nimage = \"no.exr\"\n"), (4, 9), &["no.exr", "No such file"]);
+    let damaged = format!("{OBJECT}[environment]\nimage = \"sky.hdr\"\n");
+    let folder = obj(TRIANGLE).with("scene.toml", damaged).with("sky.hdr", "#?RADIANCE\nnothing");
+    folder.fails_at("scene.toml", "scene.toml", (4, 9), &["sky.hdr"]);
+}
+
+#[test]
+fn luminaires_that_are_never_met_are_dark() {
+    let scene = tables("[integrator]\nestimator = \"no-light-sampling\"\n");
+    warned(&scene, &["ever meets", "will be black"]);
+    let lit = tables("[integrator]\nestimator = \"no-light-sampling\"\n[environment]\nradiance = [1, 1, 1]\n");
+    assert!(!lit.warnings.iter().any(|warning| warning.contains("black")), "{:?}", lit.warnings);
+}
