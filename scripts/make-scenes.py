@@ -407,8 +407,8 @@ def shapes(out):
 
 def shadows(out):
     stage = Obj("A floor and a wall, a screen between the middle luminaire and the wall, and a fence.")
-    stage.part("floor", "floor", quad((-5, 0, 5), (5, 0, 5), (5, 0, -2), (-5, 0, -2)))
-    stage.part("wall", "wall", quad((-5, 0, -2), (5, 0, -2), (5, 4, -2), (-5, 4, -2)))
+    stage.part("floor", "floor", quad((-5.6, 0, 5), (5.6, 0, 5), (5.6, 0, -2), (-5.6, 0, -2)))
+    stage.part("wall", "wall", quad((-5.6, 0, -2), (5.6, 0, -2), (5.6, 4, -2), (-5.6, 4, -2)))
     stage.part("screen", "screen", box((-0.75, 0, -1.55), (0.75, 1.9, -1.5)))
     pickets = [box((x - 0.06, 0, 0.5), (x + 0.06, 0.9, 0.55)) for x in (-0.6, -0.3, 0.0, 0.3, 0.6)]
     stage.part("fence", "wood", join(pickets + [box((-0.75, h, 0.55), (0.75, h + 0.08, 0.6)) for h in (0.2, 0.62)]))
@@ -490,7 +490,7 @@ def glass(out):
     prism = [(r * math.sin(TAU * i / 3), r * math.cos(TAU * i / 3)) for i in range(3)]
     points = [(x, y, z) for z in (-0.8, 0.8) for x, y in prism]
     prism = Shape(points, [[0, 1, 2], [5, 4, 3], [0, 3, 4, 1], [1, 4, 5, 2], [2, 5, 3, 0]])
-    bodies.part("prism", "clear", prism.turn("y", 52).move(1.75, 0.251, 1.25))
+    bodies.part("prism", "clear", prism.turn("y", 24).move(-1.45, 0.251, 1.3))
     bodies.part("slab", "tinted", box((-0.06, 0, -0.55), (0.06, 1.5, 0.55)).turn("y", 35).move(2.3, 0.001, -0.35))
     bodies.write(out / "glass" / "bodies.obj")
 
@@ -582,8 +582,8 @@ def textures(out):
     write_png(folder / "half.png", 64, 64, pixels)
 
     yard = Obj("A brick wall, a checkered floor, a trellis, a window that glows, and a chart.", library="textures.mtl")
-    yard.part("floor", "checker", quad((-4, 0, 4), (4, 0, 4), (4, 0, -2), (-4, 0, -2), (2, 1.5)))
-    yard.part("wall", "bricks", quad((-4, 0, -2), (4, 0, -2), (4, 4, -2), (-4, 4, -2), (4, 2)))
+    yard.part("floor", "checker", quad((-6, 0, 4), (6, 0, 4), (6, 0, -2), (-6, 0, -2), (3, 1.5)))
+    yard.part("wall", "bricks", quad((-6, 0, -2), (6, 0, -2), (6, 4, -2), (-6, 4, -2), (6, 2)))
     yard.part("trellis", "trellis", quad((-2.9, 0, -0.2), (-0.9, 0, -0.9), (-0.9, 2.1, -0.9), (-2.9, 2.1, -0.2), (4, 4)))
     yard.part("window", "window", quad((1.15, 0.95, -1.95), (2.35, 0.95, -1.95), (2.35, 2.75, -1.95), (1.15, 2.75, -1.95)))
     sill = join([box((1.05, 0.85, -2), (2.45, 0.95, -1.8)), box((1.05, 2.75, -2), (2.45, 2.85, -1.88)),
