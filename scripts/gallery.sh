@@ -19,9 +19,9 @@ shadows                shadows/shadows.toml          400 192
 directions-uniform     directions/directions.toml    288 64   --directions uniform
 directions-cosine      directions/directions.toml    288 64   --directions cosine
 directions-bsdf        directions/directions.toml    288 64
-extinction-reweighted  extinction/extinction.toml    288 64   --estimator cosine
-extinction-literal     extinction/extinction.toml    288 64   --estimator literal-extinction
-extinction-threshold   extinction/extinction.toml    288 64   --estimator cosine --albedo-threshold 0.3
+extinction-reweighted  extinction/extinction.toml    288 160  --estimator cosine
+extinction-literal     extinction/extinction.toml    288 160  --estimator literal-extinction
+extinction-threshold   extinction/extinction.toml    288 160  --estimator cosine --albedo-threshold 0.3
 lamps                  lamps/lamps.toml              400 256
 mirror                 mirror/mirror.toml            400 128
 glass                  glass/glass.toml              400 448
@@ -30,9 +30,9 @@ orthographic           lens/orthographic.toml        400 96
 textures               textures/textures.toml        400 128
 environment            environment/environment.toml  400 192
 many-lights            many-lights/many-lights.toml  400 192
-plates-direct          plates/plates.toml            288 48   --light-sampling direct
-plates-none            plates/plates.toml            288 48   --light-sampling none
-plates-mis             plates/plates.toml            288 48
+plates-direct          plates/plates.toml            288 64   --light-sampling direct
+plates-none            plates/plates.toml            288 64   --light-sampling none
+plates-mis             plates/plates.toml            288 64
 instances              instances/instances.toml      400 64
 END
 }

@@ -429,7 +429,7 @@ def directions(out):
 
 
 def extinction(out):
-    rooms = Obj("Two rooms and an arcade between them; the lamp stands in the one behind.")
+    rooms = Obj("Two rooms and an arcade between them; the lamp hangs in the one behind.")
     rooms.part("front", "wall", inside((-2.6, 0, 0), (2.6, 3, 5), without=(0, 2)))
     rooms.part("floor", "floor", quad((-2.6, 0, 5), (2.6, 0, 5), (2.6, 0, -3.2), (-2.6, 0, -3.2)))
     # The wall between the rooms is 0.3 thick, with three doors 1 wide and 2.2 high.
@@ -437,7 +437,7 @@ def extinction(out):
         rooms.part(name, "wall", box((x, 0, -0.3), (-2.05 if x < -2 else 2.6 if x > 1.5 else x + 0.35, 2.2, 0)))
     rooms.part("lintel", "wall", box((-2.6, 2.2, -0.3), (2.6, 3, 0)))
     rooms.part("back", "wall", inside((-2.6, 0, -3.2), (2.6, 3, -0.3), without=(1, 2)))
-    rooms.part("lamp", "lamp", box((-1.3, 2.65, -1.2), (1.3, 2.75, -0.6)))
+    rooms.part("lamp", "lamp", quad((-1.4, 2.99, -1.7), (1.4, 2.99, -1.7), (1.4, 2.99, -0.9), (-1.4, 2.99, -0.9)))
     rooms.write(out / "extinction" / "rooms.obj")
 
 
