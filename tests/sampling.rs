@@ -19,6 +19,13 @@ fn points(place: [u32; 3], samples: impl Iterator<Item = u32>) -> Vec<[u32; 4]> 
     samples.map(|sample| Sampler::Sobol.numbers(pixel, sample, block, seed)).collect()
 }
 
+/// Fails if the smallest of many `p` is too small; each comes with what it is about.
+fn assert_smallest(ps: &[(f64, String)]) {
+    let (smallest, what) = ps.iter().min_by(|a, b| a.0.total_cmp(&b.0)).expect("tests");
+    let p = sidak(*smallest, ps.len());
+    assert!(p >= SIGNIFICANCE, "p = {p:.1e} (of {}): {what}", ps.len());
+}
+
 /// Whether `2^k` points fall one in each of the `2^k` boxes of every shape `2^-a` by `2^(a-k)`.
 fn is_net(points: &[[u32; 2]]) -> bool {
     let k = points.len().ilog2();
@@ -154,9 +161,7 @@ fn numbers_are_uniform_and_independent() {
             tests
         })
         .collect();
-    let (smallest, what) = ps.iter().min_by(|a, b| a.0.total_cmp(&b.0)).expect("tests");
-    let p = sidak(*smallest, ps.len());
-    assert!(p >= SIGNIFICANCE, "p = {p:.1e} (of {}): {what}", ps.len());
+    assert_smallest(&ps);
 }
 
 /// Name, integrand over the unit square, its integral, and the power of the number of points by which its variance is smaller than with
@@ -196,6 +201,7 @@ fn integrate(
 #[test]
 fn integrates_as_well_as_sobol_burley() {
     const RUNS: u32 = 2000;
+    let mut ps = Vec::new();
     for n in [16, 64, 256, 1024, 4096] {
         for (name, f, integral, gain_exponent) in integrands() {
             let theirs = |run, i| [0, 1].map(|d| f64::from(sobol_burley::sample(i, d, run)));
@@ -212,19 +218,21 @@ fn integrates_as_well_as_sobol_burley() {
                 };
                 let (mean, ours) = integrate(RUNS, n, integral, f, ours);
                 let what = format!("{name}, {n} points, pair {pair}");
-                let p = two_sided((mean.mean - integral) / mean.error);
-                assert!(p >= SIGNIFICANCE, "{what}: {mean:?}, expected {integral}: p = {p:.1e}");
-                // The mean squared errors of both samplers are the same.
-                let p = two_sided((ours.mean - theirs.mean) / (ours.error.powi(2) + theirs.error.powi(2)).sqrt());
-                assert!(p >= SIGNIFICANCE, "{what}: mean squared error {ours:?}, the crate's {theirs:?}: p = {p:.1e}");
-                // Squared errors of independent numbers fall with 1 / N; of scrambled nets with N^-1.5 across a jump that is not along
-                // an axis, with N^-2 along one, faster where there is none.
+                ps.push((two_sided((mean.mean - integral) / mean.error), format!("{what}: {mean:?}, not {integral}")));
+                let difference = (ours.mean - theirs.mean) / (ours.error.powi(2) + theirs.error.powi(2)).sqrt();
+                ps.push((
+                    two_sided(difference),
+                    format!("{what}: mean squared error {ours:?}, the crate's {theirs:?}"),
+                ));
+                // Squared errors of independent numbers fall with 1 / N; of scrambled nets with N^-1.5 across a jump that is not
+                // along an axis, with N^-2 along one, faster where there is none. Half of that is asked for.
                 let gain = independent / ours.mean;
-                let least = 0.7 * f64::from(n).powf(gain_exponent);
+                let least = 0.5 * f64::from(n).powf(gain_exponent);
                 assert!(gain > least, "{what}: {gain} times better than independent numbers");
             }
         }
     }
+    assert_smallest(&ps);
 }
 
 /// The product of two numbers of different pairs, of mean 0 and variance 1 each, so that neither alone contributes: the variance of its
@@ -239,7 +247,7 @@ fn pairs_are_independent() {
     const RUNS: u32 = 4000;
     let expected = 1.0 + 18.0 / 31.0;
     let centred = |x: u32| (uniform(x) - 0.5) * 12f64.sqrt();
-    let (mut smallest, mut tests) = (1.0f64, 0);
+    let mut ps = Vec::new();
     for n in [16, 256] {
         for (block, pixel, seed) in [(2, 0, 0), (light_block(0), 0, 0), (scatter_block(1), 0, 0), (2, 1, 0), (2, 0, 1)]
         {
@@ -257,13 +265,12 @@ fn pairs_are_independent() {
                     .collect();
                 let variance = Estimate::new(squares.into_iter());
                 assert!(variance.error < 0.03 * expected, "not sharp: {variance:?}");
-                smallest = smallest.min(two_sided((variance.mean - expected) / variance.error));
-                tests += 1;
+                let what = format!("{n} points, numbers {a} and {b}, block {block}: {variance:?}, not {expected}");
+                ps.push((two_sided((variance.mean - expected) / variance.error), what));
             }
         }
     }
-    let p = sidak(smallest, tests);
-    assert!(p >= SIGNIFICANCE, "p = {p:.1e}");
+    assert_smallest(&ps);
 }
 
 /// The errors that pixels make with all their samples are independent of those of other pixels, blocks and seeds: correlations are those
@@ -295,7 +302,5 @@ fn errors_are_independent() {
             }
         }
     }
-    let (smallest, what) = ps.iter().min_by(|a, b| a.0.total_cmp(&b.0)).expect("tests");
-    let p = sidak(*smallest, ps.len());
-    assert!(p >= SIGNIFICANCE, "p = {p:.1e} (of {}): {what}", ps.len());
+    assert_smallest(&ps);
 }

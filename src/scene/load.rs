@@ -109,17 +109,9 @@ impl Loader {
             material_of.push(index.unwrap_or(0));
         }
         if let Some((_, line)) = missing.first().filter(|_| first) {
-            let names: Vec<String> = missing.iter().take(8).map(|(name, _)| format!("`{name}`")).collect();
-            let more = if missing.len() > names.len() {
-                format!(" and {} more", missing.len() - names.len())
-            } else {
-                String::new()
-            };
-            self.warnings.push(format!(
-                "{}:{line}: no MTL file defines {}{more}; the material `default` is used",
-                path.display(),
-                names.join(", ")
-            ));
+            let names = listed(missing.iter().map(|(name, _)| name.as_str()));
+            let path = path.display();
+            self.warnings.push(format!("{path}:{line}: no MTL file defines {names}; the material `default` is used"));
         }
         for triangle in &mut mesh.triangles {
             triangle.material = material_of[triangle.material as usize];
@@ -165,6 +157,7 @@ impl Loader {
                 }
             }
         }
+        self.warn_of_ignored(&shown);
         let mut textures = Textures::default();
         let mut materials = Vec::new();
         for (draft, shown) in self.drafts.iter().zip(shown) {
@@ -177,6 +170,23 @@ impl Loader {
         }
         self.warn_of_missing_uvs(objects, &materials);
         (materials, textures.loaded)
+    }
+
+    /// One warning for all materials of a file that ask for the same.
+    fn warn_of_ignored(&mut self, shown: &[bool]) {
+        let mut groups: Vec<(&(String, String), Vec<&str>)> = Vec::new();
+        for (draft, _) in self.drafts.iter().zip(shown).filter(|(_, shown)| **shown) {
+            let Some(ignored) = &draft.ignored else { continue };
+            match groups.iter_mut().find(|(other, _)| *other == ignored) {
+                Some((_, names)) => names.push(&draft.name),
+                None => groups.push((ignored, vec![&draft.name])),
+            }
+        }
+        for ((file, what), names) in groups {
+            let noun = if names.len() == 1 { "material" } else { "materials" };
+            let names = listed(names.into_iter());
+            self.warnings.push(format!("{file}: {noun} {names}: not modelled, ignored: {what}"));
+        }
     }
 
     /// Maps need texture coordinates.
@@ -233,6 +243,14 @@ impl Loader {
         self.libraries.insert(identity, materials.clone());
         Ok(materials)
     }
+}
+
+/// A list of names in a warning, not too long.
+fn listed<'a>(names: impl ExactSizeIterator<Item = &'a str>) -> String {
+    const MOST: usize = 8;
+    let more = names.len().saturating_sub(MOST);
+    let text = names.take(MOST).map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+    if more > 0 { format!("{text} and {more} more") } else { text }
 }
 
 /// One name for one file, however the path is spelled.

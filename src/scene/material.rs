@@ -38,7 +38,9 @@ pub(super) struct Draft {
     pub opacity: Option<f32>,
     /// The maps of all these.
     pub maps: DraftMaps,
-    /// What the MTL file asks for and nothing models, or what had to be guessed: warnings, if the material is in use.
+    /// The MTL file, and what it asks for and nothing models.
+    pub ignored: Option<(String, String)>,
+    /// What had to be guessed: warnings, if the material is in use.
     pub notes: Vec<String>,
 }
 

@@ -162,7 +162,7 @@ impl Reader<'_> {
         current.multipliers_of_maps(&at);
         let Current { mut draft, ignored, .. } = current;
         if !ignored.is_empty() {
-            draft.notes.insert(0, format!("{at}: not modelled, ignored: {}", ignored.join(", ")));
+            draft.ignored = Some((self.path.display().to_string(), ignored.join(", ")));
         }
         if self.drafts.iter().any(|other| other.name == draft.name) {
             self.warnings.push(format!("{at} is defined twice; the later one counts"));

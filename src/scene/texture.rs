@@ -132,7 +132,7 @@ impl Textures {
         const SIDE: u32 = 16;
         *self.fallback.get_or_insert_with(|| {
             let (one, zero) = (f16::ONE, f16::ZERO);
-            let check = |i: u32| (i % SIDE / 4 + i / SIDE / 4) % 2 == 0;
+            let check = |i: u32| (i % SIDE / 4 + i / SIDE / 4).is_multiple_of(2);
             let colour = |i| if check(i) { [one, zero, one, one] } else { [zero, zero, zero, one] };
             let texels = (0..SIDE * SIDE).map(colour).collect();
             let name = "(missing texture)".into();
@@ -226,9 +226,9 @@ fn half(value: f32) -> f16 {
     f16::from_f32(value.max(0.0).min(f16::MAX.to_f32()))
 }
 
-/// In [0, 1].
+/// In [0, 1]; NaN becomes 0.
 fn opacity(value: f32) -> f16 {
-    f16::from_f32(value.max(0.0).min(1.0))
+    f16::from_f32(value.max(0.0).clamp(0.0, 1.0))
 }
 
 impl Texture {

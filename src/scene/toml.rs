@@ -157,7 +157,7 @@ impl File<'_> {
                     emission: self.map(&table.emission_map)?,
                     opacity: self.map(&table.opacity_map)?,
                 },
-                notes: Vec::new(),
+                ..Draft::default()
             })
         };
         tables.iter().map(draft).collect()

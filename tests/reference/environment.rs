@@ -6,7 +6,7 @@ use crate::transport::means;
 use glam::{Affine3A, DVec3, Vec3};
 use luminaire::reference::Reference;
 use luminaire::sampling::{random4, uniform};
-use luminaire::scene::{Environment, EnvironmentImage, Scene};
+use luminaire::scene::*;
 use std::f64::consts::{PI, TAU};
 
 const WIDTH: u32 = 8;
@@ -146,4 +146,28 @@ fn constant_and_black_environments() {
     let tracer = Reference::new(&under(constant(Vec3::ZERO)));
     assert!(tracer.sample_environment([7; 4]).is_none());
     assert_eq!(tracer.environment_pdf(DVec3::Y), 0.0);
+}
+
+/// A white surface in a white environment is white, also where light sampling is busy elsewhere half of the time: the probability of choosing
+/// the environment belongs to the weights.
+#[test]
+fn white_is_white_among_other_luminaires() {
+    let mut scene = empty(8, 8);
+    add(
+        &mut scene,
+        quad(Vec3::new(-9.0, -9.0, -2.0), Vec3::X * 18.0, Vec3::Y * 18.0),
+        matte(Vec3::ONE),
+        Affine3A::IDENTITY,
+    );
+    scene.environment = Some(Environment { radiance: Vec3::ONE, image: None, rotation: 0.0 });
+    // Behind the surface.
+    scene.luminaires.push(Luminaire::Point { position: -Vec3::Z * 4.0, intensity: Vec3::splat(500.0) });
+    let share = Reference::new(&scene).environment_pdf(DVec3::Z) * 4.0 * PI;
+    assert!((0.3..0.7).contains(&share), "the environment is chosen with probability {share}");
+    for light_sampling in [LightSampling::None, LightSampling::Direct, LightSampling::Mis] {
+        for directions in [Directions::Uniform, Directions::Cosine] {
+            scene.integrator = Integrator::Path(Estimator { light_sampling, directions, ..Estimator::default() });
+            means(&scene, 1500)[1].assert_is(1.0, 1e-2);
+        }
+    }
 }

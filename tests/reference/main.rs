@@ -9,7 +9,7 @@ mod impulses;
 mod intersection;
 mod light;
 mod sampling;
-mod sensor;
 mod scattering;
+mod sensor;
 mod textures;
 mod transport;
