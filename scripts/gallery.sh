@@ -1,0 +1,56 @@
+#!/usr/bin/env bash
+# Renders the pictures of docs/gallery.md from scenes/, with the program that `make build` made.
+#
+#   scripts/gallery.sh                     all of them into docs/images/: about six minutes on two cores without a GPU
+#   scripts/gallery.sh [-o FOLDER] NAME... only some, by the name of the picture, perhaps into another folder
+#
+# Other options of `luminaire render` may be put into GALLERY_OPTIONS, for example GALLERY_OPTIONS="--backend cpu".
+set -euo pipefail
+cd "$(dirname "$0")/.."
+program=${CARGO_TARGET_DIR:-target}/release/luminaire
+[ -x "$program" ] || { echo "gallery: $program is missing: run make build" >&2; exit 1; }
+
+# name of the picture, scene, width, samples a pixel, other options
+pictures() {
+    cat <<'END'
+cornell                cornell/cornell.toml          400 256
+simple                 simple/simple.toml            400 16
+shadows                shadows/shadows.toml          400 192
+directions-uniform     directions/directions.toml    288 64   --directions uniform
+directions-cosine      directions/directions.toml    288 64   --directions cosine
+directions-bsdf        directions/directions.toml    288 64
+extinction-reweighted  extinction/extinction.toml    288 160  --estimator cosine
+extinction-literal     extinction/extinction.toml    288 160  --estimator literal-extinction
+extinction-threshold   extinction/extinction.toml    288 160  --estimator cosine --albedo-threshold 0.3
+lamps                  lamps/lamps.toml              400 256
+mirror                 mirror/mirror.toml            400 128
+glass                  glass/glass.toml              400 448
+lens                   lens/lens.toml                400 192
+orthographic           lens/orthographic.toml        400 96
+textures               textures/textures.toml        400 128
+environment            environment/environment.toml  400 192
+many-lights            many-lights/many-lights.toml  400 192
+plates-direct          plates/plates.toml            288 64   --light-sampling direct
+plates-none            plates/plates.toml            288 64   --light-sampling none
+plates-mis             plates/plates.toml            288 64
+instances              instances/instances.toml      400 64
+END
+}
+
+folder=docs/images
+if [ "${1:-}" = -o ]; then
+    folder=${2:?"-o wants a folder"}
+    shift 2
+fi
+for wanted; do
+    pictures | awk -v name="$wanted" '$1 == name { found = 1 } END { exit !found }' ||
+        { echo "gallery: there is no picture \`$wanted\`; there are: $(pictures | awk '{ printf "%s ", $1 }')" >&2; exit 2; }
+done
+mkdir -p "$folder"
+while read -r name scene width spp options; do
+    if [ $# != 0 ] && [[ " $* " != *" $name "* ]]; then continue; fi
+    start=$SECONDS
+    # shellcheck disable=SC2086 # the options are words
+    "$program" render "scenes/$scene" --width "$width" --spp "$spp" $options ${GALLERY_OPTIONS:-} --quiet -o "$folder/$name.png" </dev/null
+    echo "$folder/$name.png: $((SECONDS - start)) s"
+done < <(pictures)
