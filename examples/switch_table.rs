@@ -14,7 +14,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
-const SIZE: u32 = 256;
+const SIZE: u32 = 128;
 const ROUNDS: usize = 9;
 
 /// Sets the feature of this number.
@@ -77,7 +77,14 @@ fn main() {
                 }
             }
             tracers.push(("everything".into(), open(&device, &scene, ray_query, |f| *f = Features::ALL)));
-            let first: Vec<f64> = tracers.iter_mut().map(|(_, tracer)| seconds(tracer)).collect();
+            let first: Vec<f64> = tracers
+                .iter_mut()
+                .map(|(feature, tracer)| {
+                    let seconds = seconds(tracer);
+                    eprintln!("{name}, {feature}: {seconds:.1} s");
+                    seconds
+                })
+                .collect();
             let mut ratios = vec![Vec::new(); tracers.len()];
             for _ in 0..ROUNDS {
                 for which in 1..tracers.len() {

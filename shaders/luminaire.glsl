@@ -63,7 +63,7 @@ float emission_weight(float pdf, float density) {
 // ray to `rays`.
 vec3 direct_light(Surfel s, Material material, vec3 wo, uvec4 random, float rest, uint salt, inout uint rays) {
     if (frame.luminaire_count == 0u) return vec3(0.0);
-    Luminaire light = luminaires[choose_luminaire(random.x)];
+    Luminaire light = luminaires[choose_luminaire(random.z)];
     // With one kind of luminaire in the scene these are constants.
     bool several = int(POINT_LUMINAIRES) + int(INFINITE_LUMINAIRES) + int(AREA_LUMINAIRES) + int(ENVIRONMENT) > 1;
     bool infinite = INFINITE_LUMINAIRES && (!several || light.kind == INFINITE);
@@ -77,7 +77,7 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, uvec4 random, float rest
     float target_error = light.c.w;
     float t_max = INFINITY;
     if (surroundings) {
-        wi = sample_environment(random.w, uniform2(random.yz), density);
+        wi = sample_environment(random.w, uniform2(random.xy), density);
         incident = environment_radiance(wi) / (density * light.radiance.w);
         density *= light.radiance.w;
     } else if (!infinite) {
@@ -86,7 +86,7 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, uvec4 random, float rest
         vec3 v[3];
         float omega;
         if (area && is_near(s.position, light.a.xyz, light.b.xyz, light.c.xyz, light.normal.xyz, light.b.w, v, omega)) {
-            wi = spherical_triangle(v, omega, uniform2(random.yz));
+            wi = spherical_triangle(v, omega, uniform2(random.xy));
             float t = dot(light.normal.xyz, light.a.xyz - s.position) / dot(light.normal.xyz, wi);
             target = s.position + t * wi;
             target_error += gamma(8.0) * (largest(abs(s.position)) + largest(abs(light.a.xyz)));
@@ -96,7 +96,7 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, uvec4 random, float rest
             if (!(t > 0.0)) return vec3(0.0);
         } else {
             if (area) {
-                vec3 w = uniform_triangle(uniform2(random.yz));
+                vec3 w = uniform_triangle(uniform2(random.xy));
                 target = w.x * light.a.xyz + w.y * light.b.xyz + w.z * light.c.xyz;
             }
             vec3 d = target - s.position;

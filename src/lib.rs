@@ -28,25 +28,33 @@
 //!
 //! # From the lecture to the code
 //!
-//! What is here of the lecture "Raytracing" (R. Kuffner dos Anjos). Shaders are under `shaders/`; each function has a twin of
-//! the same name in [`mod@reference`] (the loop of its `radiance` is split into `camera_path` and `extend_path`).
+//! Every system of the lecture "Raytracing" (R. Kuffner dos Anjos), slide by slide. Shaders are under `shaders/`; each function has a twin of
+//! the same name in [`mod@reference`] (the loop of its `radiance` is split into `camera_path` and `extend_path`). Tests are under `tests/`,
+//! scenes under `scenes/`; every scene is rendered by every backend against the reference (`gpu::scenes`).
 //!
-//! | slide | system | shader | tests |
-//! |---|---|---|---|
-//! | Surface Element Class | `Surfel`, normalised Blinn-Phong | `surfel.glsl`, `scatter.glsl` | `gpu::functions::bsdf_matches` |
-//! | A Simple Raytracer | direct light and the ambient term | `path.glsl` (`SIMPLE`) | `gpu::pictures`, scene `simple` |
-//! | Path Trace Function | emission, direct and indirect light | `path.glsl` | `gpu::pictures` |
-//! | Lighting Functions | direct light, ambient | `luminaire.glsl` | `gpu::pictures::inverse_square_and_none_at_infinity` |
-//! | Intersection Problems | origins offset by their error bounds | `surfel.glsl`, `offset_ray_origin` | `gpu::intersection::surfaces_do_not_hit_themselves` |
-//! | Shadows & Attenuation | shadow rays, inverse square, luminaires at infinity | `luminaire.glsl` | `reference::light` |
-//! | More Efficient Integration | cosine-distributed directions | `warp.glsl`, `scatter.glsl` | `gpu::functions::directions_are_cosine_distributed` |
-//! | Image Loop | samples added up at the image; samples or time end it | `path_trace.comp`, [`render`] | `render::tests` |
-//! | Extinction | re-weighted by the share that survives | `path.glsl` | furnaces in `gpu::pictures` and `reference::transport` |
-//! | Area Luminaires | any set of emissive triangles, by area | `luminaire.glsl` | `gpu::pictures::irradiance_of_a_triangle_lamp` |
-//! | Sensor Modelling | box filter over the pixel, pinhole | `sensor.glsl` | `gpu::pictures` |
-//! | Assumptions | escaping light disappears, steady state, RGB | `path.glsl` | all of them |
+//! | | slide | file: function | tests | scene |
+//! |---|---|---|---|---|
+//! | 1 | Surface Element Class: `Surfel`, Blinn-Phong (normalised) | `surfel.glsl`: `surfel`; `scatter.glsl`: `bsdf`; [`reference::surfel`] | `gpu::functions::bsdf_matches`, `reference::scattering` | `plates` |
+//! | 2 | A Simple Raytracer: direct light and the ambient term | `path.glsl`: `SIMPLE`; [`scene::Integrator::Simple`] | `gpu::pictures` ("simple"), `gpu::features` ("parallel") | `simple` |
+//! | 3 | Path Trace Function: emission, direct, indirect light | `path.glsl`: `extend_path`; [`reference::path`] | `gpu::pictures`, `reference::transport` | `cornell` |
+//! | 4 | Lighting Functions: direct light of a point, ambient | `luminaire.glsl`: `direct_light`; [`reference::luminaire`] | `gpu::pictures::inverse_square_and_none_at_infinity` | `simple`, `shadows` |
+//! | 5 | Intersection Problems: displacing the intersection | `surfel.glsl`: `offset_ray_origin` | `gpu::intersection::surfaces_do_not_hit_themselves` | all |
+//! | 6 | Shadows & Attenuation: shadow rays, inverse square, infinity | `luminaire.glsl`: `direct_light`; `intersect*.glsl`: `occluded` | `reference::light`, `gpu::intersection` | `shadows` |
+//! | 7 | Inefficient Integration: evenly distributed directions | `warp.glsl`: `uniform_hemisphere`; [`scene::Directions::Uniform`] | `reference::scattering`, `gpu::features::every_choice_of_the_estimator_equals_the_reference` | `directions` |
+//! | 8 | More Efficient Integration: cosine, BSDF | `warp.glsl`: `cosine_hemisphere`, `glossy_half_vector`; `scatter.glsl` | `gpu::functions::directions_are_cosine_distributed`, `reference::scattering` | `directions` |
+//! | 9 | Image Loop: samples added up at the image; samples or time end it | `path_trace.comp`; [`render`]; [`sampling`] | `render::tests`, `sampling` | all |
+//! | 10 | Extinction: re-weighted, or literally | `path.glsl`: `EXTINCTION`; `scatter.glsl`: `survival` | `reference::estimators` (furnaces) | `extinction`, `furnace` |
+//! | 11 | Albedo Termination: a threshold | `path.glsl`: `THRESHOLD` | `reference::estimators` (furnaces) | `extinction` |
+//! | 12 | Area Luminaires: of any shape, by area or solid angle, with MIS | `luminaire.glsl`: `direct_light`, `is_near`; `warp.glsl`: `spherical_triangle` | `gpu::pictures::irradiance_of_a_triangle_lamp`, `reference::light` | `lamps`, `many-lights` |
+//! | 13 | Impulse Reflection: 60 % impulse, 40 % other | `impulse.glsl`: `impulses`; `scatter.glsl`: `scatter`; [`reference::impulse`] | `reference::impulses` | `mirror` |
+//! | 14 | Adding Transmission: refraction, BSDF over the sphere | `impulse.glsl`: `fresnel`, `refract_direction`; [`reference::impulse`] | `reference::impulses`, `gpu::features` ("glass") | `glass`, `furnace/glass` |
+//! | 15 | Sensor Modelling: pixel filter, lens, projection | `sensor.glsl`: `sensor_ray`; [`reference::sensor`] | `reference::sensor`, `gpu::sensor` | `lens`, `lens/orthographic` |
+//! | 16 | Assumptions: escaping light disappears, steady state, RGB | `path.glsl`: `extend_path`; [`scene::Environment`] where a scene asks for one | `reference::environment`, `gpu::features` ("open air") | `furnace`, `environment` |
 //!
-//! Not here yet: uniform directions, albedo termination, impulse reflection, transmission, the lens.
+//! Beyond the slides: multiple importance sampling (`luminaire.glsl`: `emission_weight`, `power_heuristic`), textures and holes
+//! (`texture.glsl`), an environment (`environment.glsl`), Owen-scrambled Sobol points ([`sampling::sobol`]). Where a line of a slide is wrong taken
+//! literally (the half vector, missing densities, emission counted twice), what it means is computed; the extinction without
+//! re-weighting and the threshold stay selectable ([`scene::PRESETS`]), because their errors are instructive.
 
 pub mod accel;
 pub mod backend;

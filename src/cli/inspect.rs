@@ -215,7 +215,7 @@ mod tests {
             "radiance (0.5 0.5 0.5) from everywhere",
             "estimator `default`",
             "at most 4 indirect bounces",
-            "Independent sampler",
+            "Sobol sampler",
             "glass of index 1.5, reflection (0.25 0.25 0.25), transmission (0.125 0.125 0.125); opacity 0.75; diffuse map wood.png",
             "wood.png  1 x 1",
             "mirrored, volume times 2.0000",

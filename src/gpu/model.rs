@@ -1,8 +1,8 @@
 //! What the kernel models for a scene: no more than the scene needs.
 
 use crate::scene::{
-    AreaSampling, Directions, Estimator, Extinction, Filter, Integrator, LightSampling, Luminaire, LuminaireTable,
-    Material, Projection, SampledLuminaire, Sampler, Scene,
+    AreaSampling, Directions, Estimator, Extinction, Integrator, LightSampling, Luminaire, LuminaireTable, Material,
+    Projection, SampledLuminaire, Sampler, Scene,
 };
 use glam::{Affine3A, Vec3};
 
@@ -94,7 +94,7 @@ impl KernelModel {
                 [m.maps.ambient, m.maps.lambert, m.maps.glossy, m.maps.emission].iter().any(Option::is_some)
             }),
             holes: material(Material::has_holes),
-            filter: scene.film.filter != Filter::Box || scene.film.filter_radius != 0.5,
+            filter: !scene.film.is_pixel_square(),
             lens: scene.sensor.lens.is_some(),
         };
         KernelModel {

@@ -67,7 +67,7 @@ impl Reference {
         let (environment, distribution) = self.environment()?;
         let texel = distribution.choice.choose(random[3]);
         let size = [distribution.width, distribution.height];
-        Some(direction_in_texel(environment, size, texel, uniform(random[1]), uniform(random[2])))
+        Some(direction_in_texel(environment, size, texel, uniform(random[0]), uniform(random[1])))
     }
 
     /// The density with which [`Reference::sample_environment`] chooses a unit direction, per steradian; without the probability

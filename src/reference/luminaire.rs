@@ -32,8 +32,8 @@ struct Unoccluded {
 }
 
 impl Reference {
-    /// Radiance towards `wo` from one luminaire, chosen by number 0 of `random` in proportion to its power and weighted by
-    /// one over its probability; numbers 1 and 2 choose the point on it, with number 3 for an environment. `salt` is that of the
+    /// Radiance towards `wo` from one luminaire, chosen by number 2 of `random` in proportion to its power and weighted by
+    /// one over its probability; numbers 0 and 1 choose the point on it, with number 3 for an environment. `salt` is that of the
     /// shadow ray; it is added, if there is one, to `rays`.
     pub fn direct_light(&self, surfel: &Surfel, wo: DVec3, random: [u32; 4], salt: u32, rays: &mut u32) -> DVec3 {
         if !surfel.scatters() {
@@ -64,12 +64,12 @@ impl Reference {
         if self.luminaires.entries.is_empty() {
             return None;
         }
-        let chosen = self.luminaires.choice.choose(random[0]);
+        let chosen = self.luminaires.choice.choose(random[2]);
         let probability = self.luminaires.choice.pdf[chosen];
         match &self.luminaires.entries[chosen] {
             SampledLuminaire::Impulse(luminaire) => impulse(surfel, luminaire, probability),
             SampledLuminaire::Area(triangle) => {
-                self.point_on_triangle(surfel, triangle, probability, uniform(random[1]), uniform(random[2]))
+                self.point_on_triangle(surfel, triangle, probability, uniform(random[0]), uniform(random[1]))
             }
             SampledLuminaire::Environment => {
                 let wi = self.sample_environment(random)?;

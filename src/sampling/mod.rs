@@ -9,7 +9,7 @@
 //! | block | number 0 | number 1 | number 2 | number 3 |
 //! |---|---|---|---|---|
 //! | 0, [`SENSOR_BLOCK`] | pixel x | pixel y | lens u | lens v |
-//! | [`light_block`]`(b)` | which luminaire | point on it, u | point on it, v | texel of the environment |
+//! | [`light_block`]`(b)` | point on the luminaire, u | point on it, v | which luminaire | texel of the environment |
 //! | [`scatter_block`]`(b)` | direction, u | direction, v | which lobe | extinction |
 //!
 //! Whether a ray passes a surface that is partly transparent is decided by [`coverage`], for each surface on its way.

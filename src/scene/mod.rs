@@ -132,7 +132,7 @@ pub struct Material {
     /// Index of refraction of what lies behind the outward normal over that in front of it (`Ni`), greater than 0; none: no
     /// Fresnel, no transmission.
     pub eta: Option<f32>,
-    /// Probability with which a path takes an impulse, in [0, 1]; none: the impulses' share of the albedo at that angle. It changes
+    /// Probability with which a path takes an impulse where there is something else too, in (0, 1); none: the impulses' share of the albedo at that angle. It changes
     /// the noise, never the mean.
     pub impulse_probability: Option<f32>,
     /// Share of light that meets the surface at all, 0 (a hole) to 1 (`d`); the rest passes straight on.

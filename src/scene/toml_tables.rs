@@ -1,7 +1,8 @@
 //! The tables of a scene file, as `scenes/README.md` describes them.
 
 use super::toml_values::{
-    Angle, Blades, Colour, Exponent, Exposure, FilterRadius, Finite, Fov, Pixels, Positive, Samples, Triple, Unit,
+    Angle, Blades, Colour, Exponent, Exposure, FilterRadius, Finite, Fov, Pixels, Positive, Probability, Samples,
+    Triple, Unit,
 };
 use super::{AreaSampling, Directions, Extinction, Filter, LightSampling, Sampler};
 use ::toml::Spanned;
@@ -129,7 +130,7 @@ pub(super) struct MaterialTable {
     pub reflection: Option<Colour>,
     pub transmission: Option<Colour>,
     pub eta: Option<Positive>,
-    pub impulse_probability: Option<Unit>,
+    pub impulse_probability: Option<Probability>,
     pub opacity: Option<Unit>,
     pub ambient_map: Option<Spanned<String>>,
     pub diffuse_map: Option<Spanned<String>>,

@@ -55,6 +55,11 @@ pub(super) struct Positive(pub f32);
 #[serde(try_from = "f64")]
 pub(super) struct Unit(pub f32);
 
+/// A number in (0, 1).
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(try_from = "f64")]
+pub(super) struct Probability(pub f32);
+
 /// Degrees in [0, 180].
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(try_from = "f64")]
@@ -136,6 +141,17 @@ impl TryFrom<f64> for Unit {
     type Error = &'static str;
     fn try_from(number: f64) -> Checked<Self> {
         (0.0..=1.0).contains(&number).then_some(Unit(number as f32)).ok_or("expected a number from 0 to 1")
+    }
+}
+
+impl TryFrom<f64> for Probability {
+    type Error = &'static str;
+    fn try_from(number: f64) -> Checked<Self> {
+        // Never or always would leave one kind of light out.
+        let probability = number as f32;
+        (probability > 0.0 && probability < 1.0)
+            .then_some(Probability(probability))
+            .ok_or("expected a probability above 0 and below 1")
     }
 }
 

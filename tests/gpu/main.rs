@@ -11,6 +11,7 @@ mod features;
 mod functions;
 mod intersection;
 mod pictures;
+mod scenes;
 mod sensor;
 
 use luminaire::gpu::{Device, GpuTracer, Instance, validation_messages};

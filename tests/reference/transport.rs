@@ -108,9 +108,9 @@ fn random_numbers_decide_what_the_table_says() {
                     expected += surfel.emission;
                 }
                 let light = numbers(1 + 2 * bounce);
-                let chosen = table.choice.choose(light[0]);
+                let chosen = table.choice.choose(light[2]);
                 let SampledLuminaire::Area(triangle) = &table.entries[chosen] else { panic!("lamps only") };
-                let weights = uniform_triangle(uniform(light[1]), uniform(light[2]));
+                let weights = uniform_triangle(uniform(light[0]), uniform(light[1]));
                 let point: DVec3 = (0..3).map(|i| weights[i] * triangle.vertices[i]).sum();
                 let d = point - surfel.position;
                 let cosines = d.normalize().dot(surfel.geometric_normal).max(0.0) * d.normalize().z.abs();
