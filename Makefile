@@ -5,7 +5,7 @@ BIN := $(or $(CARGO_TARGET_DIR),target)/release/luminaire
 OLD_DRIVER := target/drivers/mesa-22.3.6/lvp_icd.json
 VALIDATION := /usr/share/vulkan/explicit_layer.d/VkLayer_khronos_validation.json
 
-.PHONY: help render test setup build shaders lint
+.PHONY: help render gallery test setup build shaders lint
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-9s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -13,6 +13,9 @@ help: ## this list
 render: setup ## render the Cornell box to out/cornell.png and out/cornell.exr, installing what is missing
 	@mkdir -p out
 	$(BIN) render scenes/cornell/cornell.toml -o out/cornell.png -o out/cornell.exr
+
+gallery: setup ## render the pictures of docs/gallery.md again (five minutes on two cores without a GPU)
+	scripts/gallery.sh
 
 test: ## install what the tests want, then run them all
 	@scripts/setup.sh test

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Renders the pictures of docs/gallery.md from scenes/, with the program that `make build` made.
 #
-#   scripts/gallery.sh                     all of them into docs/images/: about six minutes on two cores without a GPU
+#   scripts/gallery.sh                     all of them into docs/images/: about five minutes on two idle cores without a GPU
 #   scripts/gallery.sh [-o FOLDER] NAME... only some, by the name of the picture, perhaps into another folder
 #
 # Other options of `luminaire render` may be put into GALLERY_OPTIONS, for example GALLERY_OPTIONS="--backend cpu".
@@ -13,23 +13,23 @@ program=${CARGO_TARGET_DIR:-target}/release/luminaire
 # name of the picture, scene, width, samples a pixel, other options
 pictures() {
     cat <<'END'
-cornell                cornell/cornell.toml          400 256
+cornell                cornell/cornell.toml          512 512
 simple                 simple/simple.toml            400 16
 shadows                shadows/shadows.toml          400 192
 directions-uniform     directions/directions.toml    288 64   --directions uniform
 directions-cosine      directions/directions.toml    288 64   --directions cosine
 directions-bsdf        directions/directions.toml    288 64
-extinction-reweighted  extinction/extinction.toml    288 160  --estimator cosine
-extinction-literal     extinction/extinction.toml    288 160  --estimator literal-extinction
-extinction-threshold   extinction/extinction.toml    288 160  --estimator cosine --albedo-threshold 0.3
-lamps                  lamps/lamps.toml              400 256
-mirror                 mirror/mirror.toml            400 128
+extinction-reweighted  extinction/extinction.toml    288 192  --estimator cosine
+extinction-literal     extinction/extinction.toml    288 192  --estimator literal-extinction
+extinction-threshold   extinction/extinction.toml    288 192  --estimator cosine --albedo-threshold 0.3
+lamps                  lamps/lamps.toml              400 384
+mirror                 mirror/mirror.toml            400 192
 glass                  glass/glass.toml              400 448
 lens                   lens/lens.toml                400 192
 orthographic           lens/orthographic.toml        400 96
-textures               textures/textures.toml        400 128
-environment            environment/environment.toml  400 192
-many-lights            many-lights/many-lights.toml  400 192
+textures               textures/textures.toml        400 160
+environment            environment/environment.toml  400 256
+many-lights            many-lights/many-lights.toml  400 320
 plates-direct          plates/plates.toml            288 64   --light-sampling direct
 plates-none            plates/plates.toml            288 64   --light-sampling none
 plates-mis             plates/plates.toml            288 64
