@@ -330,6 +330,36 @@ fn inspect_tells_what_was_loaded() {
 }
 
 #[test]
+fn inspect_lists_the_fallback_where_it_is_seen() {
+    let folder = Folder::new();
+    let face = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    folder.write("own.mtl", "newmtl default\nKd .1 .2 .3\n");
+    let names = |obj: &str| {
+        folder.write("a.obj", obj);
+        let output = folder.luminaire(&["inspect", "a.obj"]).output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let said = String::from_utf8_lossy(&output.stdout).into_owned();
+        let rows = said.lines().map(str::trim).skip_while(|line| *line != "materials").skip(2);
+        let rows = rows.take_while(|line| !line.is_empty());
+        rows.map(|line| line.split("  ").next().unwrap().to_owned()).collect::<Vec<_>>()
+    };
+    assert_eq!(names(face), ["default"]);
+    assert_eq!(names(&format!("mtllib own.mtl\nusemtl default\n{face}")), ["default"]);
+    assert_eq!(names(&format!("mtllib own.mtl\n{face}usemtl default\nf 1 2 3\n")), ["default (built in)", "default"]);
+    assert_eq!(names(&format!("mtllib good.mtl\nusemtl lamp\n{face}")), ["lamp"]);
+}
+
+#[test]
+fn the_help_names_both_samplers() {
+    let folder = Folder::new();
+    let output = folder.luminaire(&["render", "--help"]).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stdout);
+    let sampler = &said[said.find("--sampler").expect("the option")..];
+    let sampler = sampler.split("\n\n").next().unwrap();
+    assert!(sampler.contains("independent") && sampler.contains("sobol"), "{sampler}");
+}
+
+#[test]
 fn help_and_version() {
     let folder = Folder::new();
     let output = folder.luminaire(&["--help"]).output().unwrap();

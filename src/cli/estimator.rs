@@ -48,7 +48,7 @@ pub struct EstimatorOptions {
     /// At most so many indirect bounces; 0 is direct light alone.
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(..=1_000_000))]
     pub max_bounces: Option<u32>,
-    /// Where the random numbers come from, by its name in scene files (independent, ...).
+    /// Where the random numbers come from: independent, or sobol (less noise) [default: the scene's].
     #[arg(long, value_name = "NAME", value_parser = named::<Sampler>)]
     pub sampler: Option<Sampler>,
 }

@@ -45,7 +45,8 @@ pub(super) fn objects(scene: &Scene) -> Vec<Vec<String>> {
     rows
 }
 
-/// Materials and how many triangles show them.
+/// Materials and how many triangles show them. The first one of a loaded scene is the built-in `default`, which nobody asked for:
+/// it is left out where nothing shows it, and told apart from one that a file calls so.
 pub(super) fn materials(scene: &Scene) -> Vec<Vec<String>> {
     let mut used = vec![0u64; scene.materials.len()];
     for object in &scene.objects {
@@ -54,10 +55,14 @@ pub(super) fn materials(scene: &Scene) -> Vec<Vec<String>> {
         }
     }
     let head = ["name", "triangles", "lambert", "glossy", "exponent", "emission", "besides"].map(String::from).to_vec();
-    let rows = scene.materials.iter().zip(used).map(|(m, used)| {
+    let built_in = scene.materials.first().filter(|first| first.name == "default");
+    let hidden = usize::from(built_in.is_some() && used[0] == 0);
+    let twice = scene.materials.iter().filter(|m| m.name == "default").count() > 1;
+    let rows = scene.materials.iter().zip(used).enumerate().skip(hidden).map(|(index, (m, used))| {
+        let name = if index == 0 && built_in.is_some() && twice { "default (built in)".into() } else { m.name.clone() };
         let exponent = if m.glossy == Vec3::ZERO { "-".into() } else { m.exponent.to_string() };
         let (lambert, glossy, emission) = (rgb(m.lambert), rgb(m.glossy), rgb(m.emission));
-        vec![m.name.clone(), used.to_string(), lambert, glossy, exponent, emission, besides(scene, m)]
+        vec![name, used.to_string(), lambert, glossy, exponent, emission, besides(scene, m)]
     });
     std::iter::once(head).chain(rows).collect()
 }

@@ -1,12 +1,25 @@
 //! Images from disk, in whatever format the `image` crate decodes.
 
+use half::f16;
 use image::{DynamicImage, ImageReader, Limits};
+use rayon::prelude::*;
 use std::path::Path;
+use std::sync::LazyLock;
 
 /// Most texels in a row or a column.
 const LARGEST_SIDE: u32 = 16_384;
 /// Most bytes of memory that decoding may take: a small file can claim to be an enormous picture.
 const MOST_MEMORY: u64 = 1 << 30;
+
+/// So many texels are worth another thread.
+pub(super) const CHUNK: usize = 1 << 14;
+
+/// The linear values of all sRGB codes of 8 bits.
+static LINEAR_8: LazyLock<Vec<f32>> =
+    LazyLock::new(|| (0..=u8::MAX).map(|code| linear(f32::from(code) / 255.0)).collect());
+/// The linear values of all sRGB codes of 16 bits; few images have so many.
+static LINEAR_16: LazyLock<Vec<f32>> =
+    LazyLock::new(|| (0..=u16::MAX).map(|code| linear(f32::from(code) / 65_535.0)).collect());
 
 /// A decoded image, four channels a texel, from the upper left, row by row.
 #[derive(Debug)]
@@ -94,15 +107,48 @@ impl ImageFile {
     /// A texel's linear colour and alpha: whole numbers are taken as sRGB, but for alpha; floats are linear as they are.
     pub(super) fn linear(&self, texel: usize) -> [f32; 4] {
         let [r, g, b, a] = self.stored(texel);
-        match self.texels {
+        let at = |channel: usize| 4 * texel + channel;
+        match &self.texels {
             Texels::Float(_) => [r, g, b, a],
-            _ => [linear(r), linear(g), linear(b), a],
+            Texels::Eight(data) => {
+                let colour = |channel| LINEAR_8[usize::from(data[at(channel)])];
+                [colour(0), colour(1), colour(2), a]
+            }
+            Texels::Sixteen(data) => {
+                let colour = |channel| LINEAR_16[usize::from(data[at(channel)])];
+                [colour(0), colour(1), colour(2), a]
+            }
         }
+    }
+
+    /// All texels: `colour` of the linear colours (see [`ImageFile::linear`]), and `alpha` of alpha.
+    pub(super) fn decode(
+        &self,
+        colour: impl Fn(f32) -> f16 + Sync,
+        alpha: impl Fn(f32) -> f16 + Sync,
+    ) -> Vec<[f16; 4]> {
+        if let Texels::Eight(data) = &self.texels {
+            let colours: Vec<f16> = LINEAR_8.iter().map(|value| colour(*value)).collect();
+            let alphas: Vec<f16> = (0..=u8::MAX).map(|code| alpha(f32::from(code) / 255.0)).collect();
+            let [colour, alpha] = [&colours, &alphas].map(|table| |code: u8| table[usize::from(code)]);
+            let texel = |t: &[u8]| [colour(t[0]), colour(t[1]), colour(t[2]), alpha(t[3])];
+            return data.par_chunks_exact(4).with_min_len(CHUNK).map(texel).collect();
+        }
+        let texel = |texel| {
+            let [r, g, b, a] = self.linear(texel);
+            [colour(r), colour(g), colour(b), alpha(a)]
+        };
+        (0..self.len()).into_par_iter().with_min_len(CHUNK).map(texel).collect()
     }
 
     /// Whether alpha is below 1 anywhere.
     pub(super) fn has_transparency(&self) -> bool {
-        self.has_alpha && (0..self.len()).any(|texel| self.stored(texel)[3] < 1.0)
+        self.has_alpha
+            && match &self.texels {
+                Texels::Eight(data) => data.chunks_exact(4).any(|texel| texel[3] < u8::MAX),
+                Texels::Sixteen(data) => data.chunks_exact(4).any(|texel| texel[3] < u16::MAX),
+                Texels::Float(data) => data.chunks_exact(4).any(|texel| texel[3] < 1.0),
+            }
     }
 }
 
@@ -114,6 +160,25 @@ fn linear(srgb: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn tables_hold_what_the_formula_gives() {
+        let eight: Vec<u8> = (0..=255).collect();
+        let sixteen: Vec<u16> = (0..=u16::MAX).collect();
+        let texels = [(64, 255.0, Texels::Eight(eight)), (16_384, 65_535.0, Texels::Sixteen(sixteen))];
+        for (width, largest, texels) in texels {
+            let image = ImageFile { width, height: 1, has_alpha: true, texels };
+            let decoded = image.decode(f16::from_f32, f16::from_f32);
+            assert_eq!(decoded.len(), width as usize);
+            for (texel, decoded) in decoded.iter().enumerate() {
+                let codes: [f32; 4] = std::array::from_fn(|channel| (4 * texel + channel) as f32 / largest);
+                let [r, g, b, a] = codes;
+                let expected = [linear(r), linear(g), linear(b), a];
+                assert_eq!(image.linear(texel), expected);
+                assert_eq!(*decoded, expected.map(f16::from_f32));
+            }
+        }
+    }
 
     #[test]
     fn decoding_is_the_inverse_of_what_is_written() {

@@ -10,7 +10,8 @@ use std::path::{Path, PathBuf};
 /// World coordinates beyond this are refused: their squares would leave the range of `f32`.
 const LARGEST_COORDINATE: f64 = 1e18;
 
-/// Loads a scene file (`.toml`), or any OBJ (`.obj`), which then gets a camera and, if nothing in it emits, a light.
+/// Loads a scene file (`.toml`), or any OBJ (`.obj`), which then gets a camera and, if next to nothing in it
+/// emits, a light.
 ///
 /// # Errors
 /// [`Error::Usage`] for another ending; otherwise if a file cannot be read or is wrong, with file and line.
@@ -137,24 +138,16 @@ impl Loader {
     /// Applies the scene file's materials, fills in every default and loads the textures. Only materials that some triangle of
     /// `objects` shows are worth a warning or a texture.
     pub(super) fn finish_materials(&mut self, objects: &[Object]) -> (Vec<Material>, Vec<Texture>) {
+        let shown = self.shown(objects);
         for change in &self.overrides {
             let mut known = false;
-            for draft in self.drafts.iter_mut().filter(|draft| draft.name == change.name) {
+            for (index, draft) in self.drafts.iter_mut().enumerate().filter(|(_, draft)| draft.name == change.name) {
                 draft.overlay(change);
-                known = true;
+                // The fallback is always there: what changes it changes something only where it is seen.
+                known |= index > 0 || shown[0];
             }
             if !known {
                 self.warnings.push(format!("the material `{}` of the scene file is not used by anything", change.name));
-            }
-        }
-        let mut shown = vec![false; self.drafts.len()];
-        for object in objects {
-            match object.material {
-                Some(material) => shown[material as usize] = true,
-                None => {
-                    let triangles = &self.meshes[object.mesh as usize].triangles;
-                    triangles.iter().for_each(|triangle| shown[triangle.material as usize] = true);
-                }
             }
         }
         self.warn_of_ignored(&shown);
@@ -170,6 +163,21 @@ impl Loader {
         }
         self.warn_of_missing_uvs(objects, &materials);
         (materials, textures.loaded)
+    }
+
+    /// For each material, whether some triangle of `objects` shows it.
+    fn shown(&self, objects: &[Object]) -> Vec<bool> {
+        let mut shown = vec![false; self.drafts.len()];
+        for object in objects {
+            match object.material {
+                Some(material) => shown[material as usize] = true,
+                None => {
+                    let triangles = &self.meshes[object.mesh as usize].triangles;
+                    triangles.iter().for_each(|triangle| shown[triangle.material as usize] = true);
+                }
+            }
+        }
+        shown
     }
 
     /// One warning for all materials of a file that ask for the same.

@@ -1,7 +1,7 @@
 //! A material while it is still being read: what nobody has said yet is `None`.
 
 use super::texture::{MapFile, Textures};
-use super::{Maps, Material, Texture};
+use super::{Maps, Material};
 use glam::Vec3;
 
 /// The exponent of a glossy material that states none.
@@ -163,7 +163,7 @@ impl Draft {
         if material.opacity == 0.0 {
             warnings.push(format!("material `{name}` has opacity 0 (d): its surfaces cannot be seen"));
         }
-        conserve_energy(&mut material, &textures.loaded, warnings);
+        conserve_energy(&mut material, textures, warnings);
         material
     }
 
@@ -189,7 +189,7 @@ impl Draft {
             MapDraft::Unstated if material.transmission != Vec3::ZERO => {}
             MapDraft::Unstated => {
                 let Some(map) = material.maps.lambert else { return };
-                match textures.loaded[map as usize].alpha_range() {
+                match textures.range(map).alpha {
                     (_, 0.0) => warnings.push(format!(
                         "the alpha of {}, a texture of material `{}`, is 0 everywhere; it is taken as opaque",
                         textures.loaded[map as usize].name, self.name
@@ -203,8 +203,8 @@ impl Draft {
 }
 
 /// Scales the albedos so that no channel reflects and transmits more than it receives.
-fn conserve_energy(material: &mut Material, textures: &[Texture], warnings: &mut Vec<String>) {
-    let largest = |map: Option<u32>| map.map_or(Vec3::ONE, |map| textures[map as usize].largest());
+fn conserve_energy(material: &mut Material, textures: &Textures, warnings: &mut Vec<String>) {
+    let largest = |map: Option<u32>| map.map_or(Vec3::ONE, |map| textures.range(map).largest);
     let (lambert_map, glossy_map) = (largest(material.maps.lambert), largest(material.maps.glossy));
     let sum = |m: &Material| {
         (m.lambert * lambert_map + m.glossy * glossy_map + m.reflection.max(m.transmission)).max_element()

@@ -1,4 +1,4 @@
-//! What an OBJ file needs to become a picture, and does not say: a camera, and a light if nothing in it emits.
+//! What an OBJ file needs to become a picture, and does not say: a camera, and a light if next to nothing in it emits.
 
 use super::load::Loader;
 use super::{
@@ -18,6 +18,9 @@ const KEY_DIRECTION: DVec3 = DVec3::new(0.3, -0.8, -0.7);
 const KEY_IRRADIANCE: f32 = 2.2;
 /// Ambient radiance beside the key light.
 const AMBIENT: f32 = 0.2;
+/// A scene whose emitting triangles have less than this share of its area is not meant to be lit by them alone: they glow, as
+/// lava in a landscape does. The lamp of a Cornell box has seven times as much.
+const LEAST_EMITTING: f64 = 1e-3;
 
 /// Size and filter of the picture where nothing is said.
 pub(super) const FILM: FilmSettings = FilmSettings { width: 512, height: 512, filter: Filter::Box, filter_radius: 0.5 };
@@ -50,19 +53,48 @@ pub(super) fn load(path: &Path) -> Result<Scene> {
         warnings: loader.warnings,
     };
     scene.sensor = framing_sensor(&scene);
-    if !scene.triangles_emit() {
+    let emitting = emitting_share(&scene);
+    if emitting < LEAST_EMITTING {
         scene.luminaires.push(Luminaire::Infinite {
             direction: KEY_DIRECTION.normalize().as_vec3(),
             irradiance: Vec3::splat(KEY_IRRADIANCE),
         });
         scene.integrator = Integrator::Simple { ambient: Vec3::splat(AMBIENT) };
+        let why = if scene.triangles_emit() {
+            format!("only {} of its area emits light, too little to see the rest by", percent(emitting))
+        } else {
+            "nothing in it emits light".into()
+        };
         scene.warnings.push(format!(
-            "{}: nothing in it emits light, so it gets a key light at infinity and an ambient term (the simple ray tracer); \
+            "{}: {why}, so it gets a key light at infinity and an ambient term (the simple ray tracer); \
              write a scene file for anything better",
             path.display()
         ));
     }
     Ok(scene)
+}
+
+/// The emitting triangles' share of the area of all triangles, from 0 to 1.
+fn emitting_share(scene: &Scene) -> f64 {
+    let (mut emitting, mut all) = (0.0, 0.0);
+    for object in &scene.objects {
+        let to_world = super::luminaire::widen(object.object_to_world);
+        let mesh = &scene.meshes[object.mesh as usize];
+        for triangle in &mesh.triangles {
+            let [a, b, c] = triangle.vertices.map(|v| to_world.transform_point3(mesh.positions[v as usize].as_dvec3()));
+            let area = 0.5 * (b - a).cross(c - a).length();
+            all += area;
+            if scene.material_of(object, triangle).emission != Vec3::ZERO {
+                emitting += area;
+            }
+        }
+    }
+    if emitting > 0.0 { emitting / all } else { 0.0 }
+}
+
+/// A small share in words.
+fn percent(share: f64) -> String {
+    if share < 1e-6 { "less than 0.0001 %".into() } else { format!("{:.4} %", 100.0 * share) }
 }
 
 /// A camera in front of the scene, a little from above and from the right, that has all of it in the picture.

@@ -1,8 +1,10 @@
 //! Textures: which file a map means, what its options change, and the texels that both tracers see.
 
 use super::Texture;
-use super::image_file::ImageFile;
+use super::image_file::{CHUNK, ImageFile};
+use glam::Vec3;
 use half::f16;
+use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
@@ -53,6 +55,8 @@ struct Key {
 pub(super) struct Textures {
     /// What was loaded.
     pub loaded: Vec<Texture>,
+    /// For each of them.
+    ranges: Vec<Range>,
     by_key: HashMap<Key, Option<u32>>,
     fallback: Option<u32>,
     said: HashSet<String>,
@@ -128,14 +132,20 @@ impl Textures {
         self.load(map, Some(map.channel), "there is no map then", warnings)
     }
 
+    /// The extremes of one of the loaded textures.
+    pub(super) fn range(&self, texture: u32) -> Range {
+        self.ranges[texture as usize]
+    }
+
     fn fallback(&mut self) -> u32 {
         const SIDE: u32 = 16;
         *self.fallback.get_or_insert_with(|| {
             let (one, zero) = (f16::ONE, f16::ZERO);
             let check = |i: u32| (i % SIDE / 4 + i / SIDE / 4).is_multiple_of(2);
             let colour = |i| if check(i) { [one, zero, one, one] } else { [zero, zero, zero, one] };
-            let texels = (0..SIDE * SIDE).map(colour).collect();
+            let texels: Vec<_> = (0..SIDE * SIDE).map(colour).collect();
             let name = "(missing texture)".into();
+            self.ranges.push(Range::of(&texels));
             self.loaded.push(Texture { name, width: SIDE, height: SIDE, texels, clamp: false });
             self.loaded.len() as u32 - 1
         })
@@ -171,6 +181,7 @@ impl Textures {
                 let texels = texels(&image, map, scalar);
                 let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
                 let (width, height) = (image.width, image.height);
+                self.ranges.push(Range::of(&texels));
                 self.loaded.push(Texture { name, width, height, texels, clamp: map.clamp });
                 Some(self.loaded.len() as u32 - 1)
             }
@@ -198,22 +209,20 @@ fn texels(image: &ImageFile, map: &MapFile, scalar: Option<Channel>) -> Vec<[f16
         other => other,
     };
     let range = |value: f32| map.base + map.gain * value;
-    (0..image.len())
-        .map(|texel| match scalar {
-            None => {
-                let [r, g, b, a] = image.linear(texel);
-                [half(range(r)), half(range(g)), half(range(b)), opacity(a)]
-            }
-            Some(channel) => {
+    match scalar {
+        None => image.decode(|value| half(range(value)), opacity),
+        Some(channel) => {
+            let scalar = |texel| {
                 let stored = image.stored(texel);
                 let value = match channel {
                     Channel::One(index) => stored[usize::from(index)],
                     Channel::Any | Channel::Luminance => luminance(stored),
                 };
                 [f16::ONE, f16::ONE, f16::ONE, opacity(range(value))]
-            }
-        })
-        .collect()
+            };
+            (0..image.len()).into_par_iter().with_min_len(CHUNK).map(scalar).collect()
+        }
+    }
 }
 
 /// The luminance of linear sRGB primaries (ITU-R BT.709); the weights' sum is 1 even in single precision, so white is 1.
@@ -231,16 +240,59 @@ fn opacity(value: f32) -> f16 {
     f16::from_f32(value.max(0.0).clamp(0.0, 1.0))
 }
 
+/// The extremes of a texture's texels. Materials share textures, so these are worth keeping.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Range {
+    /// The largest colour, channel by channel.
+    pub largest: Vec3,
+    /// The least and the greatest alpha.
+    pub alpha: (f32, f32),
+}
+
+impl Range {
+    fn of(texels: &[[f16; 4]]) -> Self {
+        // Half floats that are not negative are in the order of their bits as whole numbers (and -0 comes before all others).
+        let bits = |texel: &[f16; 4]| texel.map(|channel| channel.to_bits() as i16);
+        let larger = |a: [i16; 4], b: [i16; 4]| std::array::from_fn(|channel| a[channel].max(b[channel]));
+        let (least, largest) = texels
+            .par_chunks(CHUNK)
+            .map(|texels| {
+                texels.iter().map(bits).fold((i16::MAX, [0; 4]), |(least, largest): (i16, [i16; 4]), texel| {
+                    (least.min(texel[3]), larger(largest, texel))
+                })
+            })
+            .reduce(|| (i16::MAX, [0; 4]), |a, b| (a.0.min(b.0), larger(a.1, b.1)));
+        let number = |bits: i16| f16::from_bits(bits as u16).to_f32();
+        let [r, g, b, a] = largest.map(number);
+        Range { largest: Vec3::new(r, g, b), alpha: (number(least), a) }
+    }
+}
+
 impl Texture {
     /// The largest colour of all texels, channel by channel.
-    pub fn largest(&self) -> glam::Vec3 {
-        let colour = |[r, g, b, _]: &[f16; 4]| glam::Vec3::new(r.to_f32(), g.to_f32(), b.to_f32());
-        self.texels.iter().map(colour).fold(glam::Vec3::ZERO, glam::Vec3::max)
+    pub fn largest(&self) -> Vec3 {
+        Range::of(&self.texels).largest
     }
 
     /// The least and the greatest alpha of all texels.
     pub fn alpha_range(&self) -> (f32, f32) {
-        let alpha = self.texels.iter().map(|texel| texel[3].to_f32());
-        alpha.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), a| (low.min(a), high.max(a)))
+        Range::of(&self.texels).alpha
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_range_is_that_of_the_numbers() {
+        let half = |numbers: [f32; 4]| numbers.map(f16::from_f32);
+        let mut texels = vec![half([0.0, -0.0, 0.25, 0.5]); 3 * CHUNK];
+        texels[0] = half([65504.0, 0.0, 0.0, 0.75]);
+        texels[CHUNK + 1] = half([1.0, 6e-8, 0.5, 0.125]);
+        let range = Range::of(&texels);
+        let tiny = f16::from_f32(6e-8).to_f32();
+        assert_eq!(range, Range { largest: Vec3::new(65504.0, tiny, 0.5), alpha: (0.125, 0.75) });
+        assert!(tiny > 0.0);
     }
 }

@@ -232,6 +232,30 @@ fn a_bare_obj_that_emits_is_path_traced() {
     assert_eq!(scene.warnings, Vec::<String>::new());
 }
 
+/// A floor of this area, and a lamp of area 1.
+fn lamp_over(floor: u32) -> Scene {
+    let text = format!(
+        "mtllib mesh.mtl\nusemtl lamp\nv 0 1 0\nv 2 1 0\nv 0 1 1\nf 1 2 3\n\
+         usemtl floor\nv 0 0 0\nv {floor} 0 0\nv 0 0 2\nf 4 5 6\n"
+    );
+    obj(text).with("mesh.mtl", "newmtl lamp\nKe 1 1 1\nnewmtl floor\nKd .5 .5 .5\n").load("mesh.obj")
+}
+
+#[test]
+fn a_bare_obj_of_which_next_to_nothing_emits_gets_a_light_too() {
+    let scene = lamp_over(1100);
+    assert_eq!(scene.luminaires.len(), 1);
+    assert!(matches!(scene.integrator, Integrator::Simple { ambient } if ambient != Vec3::ZERO));
+    assert_eq!(scene.warnings.len(), 1, "{:?}", scene.warnings);
+    warned(&scene, &["mesh.obj", "only 0.0908 %", "key light", "ambient"]);
+    assert_eq!(first_material(&scene).emission, Vec3::ONE, "it still glows");
+
+    let scene = lamp_over(900);
+    assert!(scene.luminaires.is_empty());
+    assert_eq!(scene.integrator, Integrator::Path(Estimator::default()));
+    assert_eq!(scene.warnings, Vec::<String>::new());
+}
+
 #[test]
 fn a_map_of_emission_emits() {
     let scene = with_mtl("newmtl m\nmap_Ke no.png\n").load("mesh.obj");

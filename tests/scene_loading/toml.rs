@@ -109,6 +109,17 @@ fn materials_are_overridden_by_name() {
 }
 
 #[test]
+fn what_changes_the_fallback_is_unused_where_nothing_shows_it() {
+    let change = "[[material]]\nname = \"default\"\ndiffuse = [0.3, 0.3, 0.3]\n";
+    let scene_file = format!("{SENSOR}{LIGHT}[[object]]\nmesh = \"mesh.obj\"\n{change}");
+    let warnings = |mtl: &str| with_mtl(mtl).with("scene.toml", &scene_file).load("scene.toml").warnings;
+    let said = warnings("newmtl m\nKd .5 .5 .5\n");
+    assert!(said.len() == 1 && said[0].contains("`default`") && said[0].contains("not used"), "{said:?}");
+    assert_eq!(warnings("newmtl m\nKd .5 .5 .5\nnewmtl default\nKd 1 0 0\n"), Vec::<String>::new());
+    assert_eq!(scene(change).load("scene.toml").warnings, Vec::<String>::new());
+}
+
+#[test]
 fn an_object_takes_the_material_of_its_own_mtl_first() {
     let folder = Folder::new()
         .with("a.obj", format!("mtllib a.mtl\n{TRIANGLE}"))
@@ -184,7 +195,7 @@ fn numbers_out_of_range_are_found_with_line_and_column() {
     toml_fails("[[material]]\nname = \"m\"\neta = 0\n", (3, 7), &["above 0"]);
     toml_fails("[[material]]\nname = \"m\"\neta = inf\n", (3, 7), &["above 0"]);
     toml_fails("[[material]]\nname = \"m\"\nopacity = 1.5\n", (3, 11), &["from 0 to 1"]);
-    toml_fails("[[material]]\nname = \"m\"\nimpulse_probability = -0.1\n", (3, 23), &["from 0 to 1"]);
+    toml_fails("[[material]]\nname = \"m\"\nimpulse_probability = -0.1\n", (3, 23), &["above 0 and below 1"]);
     toml_fails("[[object]]\nmesh = \"mesh.obj\"\nsmooth = 181\n", (3, 10), &["0 to 180"]);
     toml_fails("[[object]]\nmesh = \"mesh.obj\"\nscale = \"big\"\n", (3, 9), &["a number or three numbers"]);
     toml_fails("[integrator]\nkind = \"path\"\nmax_bounces = -1\n", (3, 15), &["from 0 to 4294967295"]);
