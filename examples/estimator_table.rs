@@ -19,10 +19,11 @@ const SAMPLES: u32 = 16;
 const ROUNDS: u32 = 6;
 const REFERENCE_SAMPLES: u32 = 4096;
 
-/// Mean radiance of each pixel over some samples, and the seconds it took.
-fn picture(tracer: &mut dyn Tracer, size: u32, samples: std::ops::Range<u32>) -> (Vec<[f64; 3]>, f64) {
+/// Mean radiance of each pixel over some samples, the seconds it took, and the rays.
+fn picture(tracer: &mut dyn Tracer, size: u32, samples: std::ops::Range<u32>) -> (Vec<[f64; 3]>, f64, u64) {
     let tile = Tile { x: 0, y: 0, width: size, height: size };
     let mut sums = vec![[0.0; 3]; tile.pixels()];
+    let mut rays = 0;
     let start = Instant::now();
     // In batches that no driver takes for a hang.
     for first in samples.clone().step_by(64) {
@@ -31,11 +32,12 @@ fn picture(tracer: &mut dyn Tracer, size: u32, samples: std::ops::Range<u32>) ->
         for (i, sum) in traced.sums.iter().enumerate() {
             let pixel = &mut sums[i % tile.pixels()];
             (0..3).for_each(|c| pixel[c] += sum.radiance[c]);
+            rays += u64::from(sum.rays);
         }
     }
     let seconds = start.elapsed().as_secs_f64();
     let n = f64::from(samples.end - samples.start);
-    (sums.into_iter().map(|p| p.map(|x| x / n)).collect(), seconds)
+    (sums.into_iter().map(|p| p.map(|x| x / n)).collect(), seconds, rays)
 }
 
 fn relative_mse(found: &[[f64; 3]], expected: &[[f64; 3]]) -> f64 {
@@ -83,9 +85,9 @@ fn main() {
         backend::open(scene, &Request { backend: Some(backend), device: None }).unwrap_or_else(|e| panic!("{e}")).tracer
     };
     println!(
-        "| scene | backend | estimator | relMSE at {SAMPLES} | seconds | relMSE x s | to default | mean / reference |"
+        "| scene | backend | estimator | relMSE at {SAMPLES} | rays a sample | seconds | relMSE x s | to default | mean / reference |"
     );
-    println!("|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|");
     for path in &arguments {
         let mut scene = scene::load(Path::new(path)).unwrap_or_else(|e| panic!("{e}"));
         scene.film.width = size;
@@ -101,20 +103,22 @@ fn main() {
             scene
         };
         let mut tracer = open(&with(77, &rows[default]), Backend::ComputeBvh);
-        let (reference, _) = picture(tracer.as_mut(), size, 0..REFERENCE_SAMPLES);
+        let (reference, ..) = picture(tracer.as_mut(), size, 0..REFERENCE_SAMPLES);
         let mean = |picture: &[[f64; 3]]| picture.iter().flatten().sum::<f64>();
         for backend in [Backend::ComputeBvh, Backend::RayQuery] {
             let mut tracers: Vec<_> = rows.iter().map(|row| open(&with(1, row), backend)).collect();
             let (mut error, mut seconds, mut bias) =
                 (vec![0.0; rows.len()], vec![Vec::new(); rows.len()], vec![0.0; rows.len()]);
+            let mut rays = vec![0; rows.len()];
             for round in 0..=ROUNDS {
                 for (row, tracer) in tracers.iter_mut().enumerate() {
-                    let (found, time) = picture(tracer.as_mut(), size, round * SAMPLES..(round + 1) * SAMPLES);
+                    let (found, time, traced) = picture(tracer.as_mut(), size, round * SAMPLES..(round + 1) * SAMPLES);
                     // The first round compiles the shader.
                     if round > 0 {
                         error[row] += relative_mse(&found, &reference) / f64::from(ROUNDS);
                         bias[row] += mean(&found) / mean(&reference) / f64::from(ROUNDS);
                         seconds[row].push(time);
+                        rays[row] += traced;
                     }
                 }
             }
@@ -126,8 +130,9 @@ fn main() {
             for (row, (label, ..)) in rows.iter().enumerate() {
                 let product = error[row] * time(row);
                 println!(
-                    "| {name} | {backend} | {label} | {:.3e} | {:.3} | {product:.3e} | {:.2} | {:.3} |",
+                    "| {name} | {backend} | {label} | {:.3e} | {:.2} | {:.3} | {product:.3e} | {:.2} | {:.3} |",
                     error[row],
+                    rays[row] as f64 / f64::from(ROUNDS * SAMPLES * size * size),
                     time(row),
                     product / (error[default] * time(default)),
                     bias[row]

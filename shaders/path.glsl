@@ -65,7 +65,8 @@ bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uin
     uvec4 random = numbers(pixel_index, sample_index, scatter_block(path.bounce), frame.seed);
     if (EXTINCTION == EXTINCTION_LITERAL || EXTINCTION == EXTINCTION_SURFACE) {
         float alive = survival(material);
-        if (uniform1(random.w) >= alive) return false;
+        // Written so that a path whose numbers are not numbers ends too.
+        if (!(uniform1(random.w) < alive)) return false;
         // The survivors stand for those that ended; the slide forgets that.
         if (EXTINCTION == EXTINCTION_SURFACE) path.throughput /= alive;
     }
@@ -80,7 +81,7 @@ bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uin
     if (EXTINCTION == EXTINCTION_THROUGHPUT) {
         if (DIELECTRICS) path.eta_scale *= next.eta2;
         float alive = min(largest(path.throughput) * (DIELECTRICS ? path.eta_scale : 1.0), MAX_SURVIVAL);
-        if (uniform1(random.w) >= alive) return false;
+        if (!(uniform1(random.w) < alive)) return false;
         path.throughput /= alive;
     }
     path.origin = offset_ray_origin(s.position, s.position_error, s.geometric_normal, next.wi);

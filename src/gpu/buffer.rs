@@ -147,7 +147,7 @@ impl TexelBuffer {
         usage: vk::BufferUsageFlags,
     ) -> Result<Self> {
         let (needed, limit) = (size_of_val(data) as u64 / 16, u64::from(device.limits.max_texel_buffer_elements));
-        let advice = "split the scene into instances of smaller meshes, use another device, or --backend cpu";
+        let advice = "use smaller meshes (as instances) and images, another device, or --backend cpu";
         device.check_limit(name, needed, limit, "texels (maxTexelBufferElements)", advice)?;
         let buffer = Buffer::upload(device, name, data, usage | vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER)?;
         let info = vk::BufferViewCreateInfo::default()

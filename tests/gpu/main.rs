@@ -6,6 +6,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod estimators;
 mod fallback;
 mod features;
 mod functions;
@@ -71,6 +72,12 @@ fn backends() -> Vec<Intersector> {
         skip(&format!("{} has no ray query; only the compute BVH was tested", device.name));
     }
     backends
+}
+
+/// On the driver without ray query, which is several times slower, tests of what does not depend on the driver return at once: they
+/// have run on the other one.
+fn on_the_old_driver() -> bool {
+    std::env::var_os(WITHOUT_RAY_QUERY).is_some()
 }
 
 /// Runs a test on every intersector, and sees that Vulkan had nothing to complain about.

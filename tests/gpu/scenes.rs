@@ -22,11 +22,6 @@ fn scene_files() -> Vec<PathBuf> {
     files
 }
 
-/// On the driver without ray query only the pixel-by-pixel test runs through all scenes: it is several times slower.
-fn on_the_old_driver() -> bool {
-    std::env::var_os(WITHOUT_RAY_QUERY).is_some()
-}
-
 /// A scene in a small picture, and its name.
 fn small(file: &Path) -> (String, Scene) {
     let mut scene = scene::load(file).unwrap_or_else(|e| panic!("{e}"));

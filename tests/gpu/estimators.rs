@@ -1,0 +1,135 @@
+//! The estimators against each other and against closed forms, on the kernel's own output.
+
+use super::*;
+use crate::common::scenes::*;
+use crate::common::statistics::*;
+use glam::{Affine3A, Vec3};
+use luminaire::render::Tracer;
+use luminaire::scene::{
+    AreaSampling, Directions, Environment, Estimator, Extinction, Integrator, LightSampling, Material, Scene,
+};
+
+/// Mean radiance over the picture: 512 samples of 32 x 32 pixels.
+fn measure(backend: &Intersector, scene: &Scene) -> Estimate {
+    let tracer: &mut dyn Tracer = &mut backend.tracer(scene);
+    total(&render(tracer, 32, 32, 512, 16))
+}
+
+/// The same mean from light sampling, none and both; from uniform, cosine and BSDF directions; from every termination that is unbiased; by
+/// area and by solid angle; by either sampler. Two-sided t-tests against the default, each with its own seed, corrected for their number.
+#[test]
+fn every_unbiased_estimator_has_one_mean() {
+    if on_the_old_driver() {
+        return;
+    }
+    let default = Estimator::default();
+    let others = [
+        Estimator { light_sampling: LightSampling::Direct, ..default },
+        Estimator { light_sampling: LightSampling::Direct, area_sampling: AreaSampling::Area, ..default },
+        Estimator { light_sampling: LightSampling::Direct, directions: Directions::Uniform, ..default },
+        Estimator { area_sampling: AreaSampling::Area, ..default },
+        Estimator { directions: Directions::Uniform, ..default },
+        Estimator { directions: Directions::Cosine, ..default },
+        Estimator { extinction: Extinction::Surface, ..default },
+        // So many bounces that what is cut is below 1e-4 of the mean.
+        Estimator { extinction: Extinction::Off, max_bounces: Some(40), ..default },
+        Estimator { light_sampling: LightSampling::None, ..default },
+        Estimator { light_sampling: LightSampling::None, directions: Directions::Uniform, ..default },
+    ];
+    // Closed, with a glossy ball, and lamps large enough to be met by chance.
+    let mut scene = cornell_like(32, 32);
+    scene.luminaires.clear();
+    let panel = quad(Vec3::new(-1.9375, -1.0, -1.0), Vec3::Y * 2.0, Vec3::Z * 2.0);
+    add(&mut scene, panel, Material { emission: Vec3::splat(1.5), ..matte(Vec3::splat(0.3)) }, Affine3A::IDENTITY);
+    let Some(backend) = backends().into_iter().next() else { return };
+    let reference = measure(&backend, &scene);
+    assert!(reference.error < 3e-3 * reference.mean);
+    for (index, estimator) in others.into_iter().enumerate() {
+        scene.integrator = Integrator::Path(estimator);
+        scene.settings.seed = index as u32 + 1;
+        let found = measure(&backend, &scene);
+        let z = (found.mean - reference.mean) / found.error.hypot(reference.error);
+        println!("{estimator:?}: {} +- {}, z = {z:.2}", found.mean, found.error);
+        assert!(sidak(two_sided(z), 10) >= SIGNIFICANCE, "{estimator:?}: {found:?} and {reference:?}, z = {z:.2}");
+        assert!(found.error < 3e-2 * found.mean, "{estimator:?}: not sharp");
+    }
+    assert_eq!(validation_messages(), 0);
+}
+
+/// A closed shell of albedo `a` that emits 1. By chance alone (no light sampling) extinction without re-weighting gives `1 / (1 - a^2)`; with
+/// direct light, whose first share is not lost, `1 + a / (1 - a^2)`; a threshold cuts the series `1 + a + a^2 + ...`, and so does a depth.
+#[test]
+fn biased_estimators_are_off_by_what_they_should() {
+    if on_the_old_driver() {
+        return;
+    }
+    let a = 0.5f64;
+    let series = |terms: i32| (0..terms).map(|k| a.powi(k)).sum::<f64>();
+    let base = Estimator::preset("cosine").expect("a preset");
+    let none = Estimator { light_sampling: LightSampling::None, ..base };
+    let cases = [
+        ("unbiased", base, 2.0),
+        ("literal, no light sampling", Estimator { extinction: Extinction::Literal, ..none }, 1.0 / (1.0 - a * a)),
+        ("literal", Estimator { extinction: Extinction::Literal, ..base }, 1.0 + a / (1.0 - a * a)),
+        // 0.5, 0.25 are at least 0.2; 0.125 is not.
+        ("threshold, no light sampling", Estimator { albedo_threshold: Some(0.2), ..none }, series(3)),
+        ("threshold", Estimator { albedo_threshold: Some(0.2), ..base }, series(4)),
+        ("2 bounces", Estimator { max_bounces: Some(2), ..base }, series(4)),
+        ("2 bounces, no light sampling", Estimator { max_bounces: Some(2), ..none }, series(4)),
+        ("2 bounces, both", Estimator { max_bounces: Some(2), ..Estimator::default() }, series(4)),
+    ];
+    let mut scene = empty(32, 32);
+    scene.sensor = pinhole(Vec3::new(0.25, 0.125, 0.5), Vec3::new(0.5, -1.0, 0.25), Vec3::Y, 60.0);
+    let glowing = Material { emission: Vec3::ONE, ..matte(Vec3::splat(a as f32)) };
+    add(&mut scene, icosphere(3), glowing, Affine3A::IDENTITY);
+    let Some(backend) = backends().into_iter().next() else { return };
+    for (name, estimator, expected) in cases {
+        scene.integrator = Integrator::Path(estimator);
+        let found = measure(&backend, &scene);
+        println!("{name}: {} +- {}, expected {expected}", found.mean, found.error);
+        found.assert_is(expected, 3e-3);
+    }
+    assert_eq!(validation_messages(), 0);
+}
+
+/// White light from everywhere shows nothing of bodies that absorb nothing: glass of any index, the 60/40 mirror, a full mirror.
+#[test]
+fn what_absorbs_nothing_is_invisible_in_uniform_light() {
+    if on_the_old_driver() {
+        return;
+    }
+    let glass =
+        |eta| Material { reflection: Vec3::ONE, transmission: Vec3::ONE, eta: Some(eta), ..Material::default() };
+    let mirror = |reflection: f32, probability| Material {
+        reflection: Vec3::splat(reflection),
+        impulse_probability: probability,
+        ..matte(Vec3::splat(1.0 - reflection))
+    };
+    let materials = [
+        glass(1.5),
+        glass(1.0 / 1.5),
+        glass(2.4),
+        mirror(0.6, Some(0.6)),
+        mirror(0.6, Some(0.2)),
+        mirror(0.6, None),
+        mirror(1.0, None),
+    ];
+    for material in materials {
+        let mut scene = empty(32, 32);
+        scene.environment = Some(Environment { radiance: Vec3::ONE, image: None, rotation: 0.0 });
+        scene.sensor.position = Vec3::Z * 2.0;
+        add(&mut scene, icosphere(2), material.clone(), Affine3A::IDENTITY);
+        on_every_backend(|backend| {
+            let found = measure(backend, &scene);
+            println!(
+                "{:?} {:?}, {}: {} +- {}",
+                material.eta,
+                material.impulse_probability,
+                backend.name(),
+                found.mean,
+                found.error
+            );
+            found.assert_is(1.0, 3e-3);
+        });
+    }
+}
