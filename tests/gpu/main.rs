@@ -6,12 +6,16 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod densities;
 mod fallback;
 mod features;
 mod functions;
 mod intersection;
+mod maps;
 mod pictures;
+mod scattering;
 mod sensor;
+mod twins;
 
 use luminaire::gpu::{Device, GpuTracer, Instance, validation_messages};
 use luminaire::scene::Scene;
