@@ -152,7 +152,7 @@ fn spherical_triangles(probe: &Probe, scene: &Scene) -> Vec<(String, f64)> {
         let share = shares_of_parts(corners, from);
         let expected: Vec<f64> = share.iter().map(|share| f64::from(N) * share).collect();
         let mut counts = vec![0; expected.len()];
-        let (mut off, mut farthest_out) = (0.0f64, 0.0f64);
+        let mut farthest_out = 0.0f64;
         for (uv, result) in uv.iter().zip(results) {
             let ([u, v, ..], [.., found]) = (floats(uv[0]), floats(result[0]));
             let wi = vector(result[0]);
@@ -161,16 +161,20 @@ fn spherical_triangles(probe: &Probe, scene: &Scene) -> Vec<(String, f64)> {
                 (found / omega - 1.0).abs() <= 2e-6 * farthest / height.min(narrow),
                 "triangle {object}: {found} for {omega}"
             );
-            off = off.max((wi - warp::spherical_triangle(seen, u, v)).length());
+            // Near the second corner the sine of the angle to it is the root of a small difference.
+            let twin = warp::spherical_triangle(seen, u, v);
+            let off = (wi - twin).length();
+            let sine = twin.cross(seen[1]).length();
+            assert!(
+                off <= 1e-5 + 4e-7 / sine.max(5e-4),
+                "triangle {object} at ({u}, {v}): {off:e} off its twin, {sine}"
+            );
             let (part, outside) = part_of(corners, from, wi);
             farthest_out = farthest_out.max(outside);
             counts[part] += 1;
         }
-        println!(
-            "triangle {object}: outside by {farthest_out:.1e} (allowed {tolerance:.1e}), off its twin by {off:.1e}"
-        );
+        println!("triangle {object}: outside by {farthest_out:.1e} (allowed {tolerance:.1e})");
         assert!(farthest_out <= tolerance, "triangle {object}: outside by {farthest_out:e}");
-        assert!(off <= 2e-5, "triangle {object}: {off:e} off its twin");
         tests.push((format!("spherical triangle {object}"), chi_square_against(&counts, &expected)));
     }
     assert_eq!(tests.len(), 6);

@@ -154,9 +154,13 @@ impl Case {
         assert!((wi - twin.wi).length() <= 1e-6 + 2e-5 * h.x.hypot(h.y) + 1e-6 / low, "{what}");
         // At the direction that the shader took.
         let expected = bsdf_pdf(&self.surfel, self.wo, wi, directions);
+        if expected == 0.0 {
+            assert!(pdf == 0.0 && weight == DVec3::ZERO, "{what}");
+            return;
+        }
         let tolerance = self.rounding(wi);
         assert!((pdf - expected).abs() <= tolerance * expected, "{what}: pdf {expected}");
-        let expected = if expected > 0.0 { self.surfel.bsdf(self.wo, wi) * wi.z / expected } else { DVec3::ZERO };
+        let expected = self.surfel.bsdf(self.wo, wi) * wi.z / expected;
         assert!((weight - expected).abs().cmple(expected * tolerance + 1e-30).all(), "{what}: weight {expected}");
     }
 
@@ -174,12 +178,14 @@ impl Case {
                 // The density and the weight that a direction came with are those that are found when it is asked for: the same formula,
                 // which a compiler may contract otherwise.
                 let ([.., again], f) = (floats(evaluated[0]), vector(evaluated[0]));
-                let tolerance = self.rounding(wi);
-                assert!((pdf - again).abs() <= tolerance * pdf, "{}: {pdf} and {again}", self.name);
-                let expected = f * wi.z;
-                let off = (weight * pdf - expected).abs();
-                assert!(off.cmple(expected * tolerance + 1e-30).all() || pdf == 0.0, "{}: {weight} {f}", self.name);
-                assert!(pdf > 0.0 || weight == DVec3::ZERO, "{}: {weight}", self.name);
+                if pdf == 0.0 {
+                    assert!(again == 0.0 && weight == DVec3::ZERO, "{}: {again} {weight}", self.name);
+                } else {
+                    let (tolerance, expected) = (self.rounding(wi), f * wi.z);
+                    assert!((pdf - again).abs() <= tolerance * pdf, "{}: {pdf} and {again}", self.name);
+                    let off = (weight * pdf - expected).abs();
+                    assert!(off.cmple(expected * tolerance + 1e-30).all(), "{}: {weight} {f}", self.name);
+                }
             }
             if let Some((cells, _)) = &self.cells {
                 let last = counts.len() - 1;
@@ -205,13 +211,15 @@ impl Case {
             let energy = Estimate::new(paths.iter().map(|path| floats(path[1])[channel]));
             let expected = self.albedo[channel];
             assert!(expected <= 1.0 + 1e-4, "{}: albedo {expected}", self.name);
-            assert!(energy.error <= 1e-2, "{}: {energy:?} is not sharp enough", self.name);
+            assert!(energy.error <= 1.5e-2, "{}: {energy:?} is not sharp enough", self.name);
             // The quadrature is good to 1e-4.
             let p = energy.p_within(expected - 1e-4, expected + 1e-4);
             tests.push((format!("{}, energy {} +- {} of {expected}", self.name, energy.mean, energy.error), p));
             // Not more than arrived, whatever was expected; 2e-6 for rounding.
-            let excess = if energy.mean <= 1.0 + 2e-6 { 1.0 } else { energy.p_within(0.0, 1.0) };
-            tests.push((format!("{}, at most 1: {} +- {}", self.name, energy.mean, energy.error), excess));
+            if energy.mean > 1.0 + 2e-6 {
+                let name = format!("{}, at most 1: {} +- {}", self.name, energy.mean, energy.error);
+                tests.push((name, energy.p_within(0.0, 1.0)));
+            }
         }
         tests
     }
@@ -229,7 +237,7 @@ fn scene_of(materials: &[Material], directions: Directions) -> (Scene, u32) {
 
 /// For each material and viewing direction: the directions of paths have the density that is claimed, impulses their probability
 /// (chi-square); the density of a path is that of its direction, and all of it is what the reference does with the same numbers; what goes
-/// on in all is the albedo, which is at most 1 (standard error at most 0.01). The significance is 1e-4 for all of it together.
+/// on in all is the albedo, which is at most 1 (standard error at most 0.015). The significance is 1e-4 for all of it together.
 fn check(materials: &[Material], directions: Directions) {
     let (scene, first) = scene_of(materials, directions);
     let cases: Vec<(usize, (f64, bool))> =
@@ -253,7 +261,7 @@ fn check(materials: &[Material], directions: Directions) {
             .collect();
         print!("{directions:?}, {}: ", backend.name());
         assert_plausible(&tests);
-        if directions == Directions::Bsdf {
+        if directions == Directions::Bsdf && materials.iter().any(|material| material.glossy != Vec3::ZERO) {
             reciprocity(&probe, materials, first);
         }
     });
