@@ -1,6 +1,6 @@
 //! The table of `docs/accuracy.md`: what each stage of the lecture buys, as error times time.
 //!
-//! usage: cargo run --release --example estimator_table -- [--size PIXELS] SCENE...
+//! usage: cargo run --release --example estimator_table -- [--size PIXELS] [--only TEXT] SCENE...
 //!
 //! Every estimator renders the same small picture in turn, several times with other samples; the error is the mean of
 //! `(a - b)^2 / (b^2 + 0.01)` over pixels and channels (relMSE), against a picture of 4096 samples by the default estimator. Error falls
@@ -72,13 +72,17 @@ fn rows(scene: &Scene) -> Vec<(String, Estimator, Sampler)> {
 
 fn main() {
     let mut arguments: Vec<String> = std::env::args().skip(1).collect();
-    let mut size = 96;
-    if arguments.first().is_some_and(|a| a == "--size") {
-        size = arguments.get(1).and_then(|s| s.parse().ok()).expect("--size PIXELS");
+    let (mut size, mut only) = (96, String::new());
+    while arguments.first().is_some_and(|a| a.starts_with("--")) {
+        match (arguments[0].as_str(), arguments.get(1)) {
+            ("--size", Some(pixels)) => size = pixels.parse().expect("--size PIXELS"),
+            ("--only", Some(text)) => only = text.clone(),
+            _ => panic!("--size PIXELS, --only TEXT"),
+        }
         arguments.drain(..2);
     }
     if arguments.is_empty() {
-        eprintln!("usage: estimator_table [--size PIXELS] SCENE...");
+        eprintln!("usage: estimator_table [--size PIXELS] [--only TEXT] SCENE...");
         std::process::exit(2);
     }
     let open = |scene: &Scene, backend| {
@@ -93,7 +97,8 @@ fn main() {
         scene.film.width = size;
         scene.film.height = size;
         let name = Path::new(path).file_stem().map(|s| s.to_string_lossy()).unwrap_or_default();
-        let rows = rows(&scene);
+        let mut rows = rows(&scene);
+        rows.retain(|(label, ..)| label == "default" || label.contains(&only));
         let default = rows.iter().position(|(name, ..)| name == "default").expect("there is one");
         let with = |seed, (_, estimator, sampler): &(String, Estimator, Sampler)| {
             let mut scene = scene.clone();

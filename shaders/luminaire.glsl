@@ -111,6 +111,7 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, uvec4 random, float rest
             }
         }
     }
+    if (area && light.normal.w != 0.0 && dot(light.normal.xyz, wi) > 0.0) return vec3(0.0);
     vec4 f = bsdf_and_pdf(s, material, wo, wi);
     vec3 radiance = f.rgb * dot(s.shading_normal, wi) * incident;
     if (radiance == vec3(0.0)) return vec3(0.0);
@@ -124,7 +125,8 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, uvec4 random, float rest
             vec3 ab = light.b.xyz - light.a.xyz;
             vec3 ac = light.c.xyz - light.a.xyz;
             vec3 ap = target - light.a.xyz;
-            vec2 barycentric = vec2(dot(cross(ap, ac), light.normal.xyz), dot(cross(ab, ap), light.normal.xyz)) / (2.0 * light.b.w);
+            vec3 n = cross(ab, ac);
+            vec2 barycentric = vec2(dot(cross(ap, ac), n), dot(cross(ab, ap), n)) / dot(n, n);
             if (TEXTURES && emission_map != NONE) radiance *= texture_at(emission_map, uv_at(light.triangle, barycentric)).rgb;
             if (partly) radiance *= opacity_at(light.material, light.triangle, barycentric);
             if (radiance == vec3(0.0)) return vec3(0.0);

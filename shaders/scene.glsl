@@ -80,7 +80,8 @@ struct Material {
     vec4 transmission;    // rgb of the impulse; w: opacity
     uvec4 maps;           // textures that multiply ambient, lambert, glossy and emission, or NONE
     uint opacity_map;     // its alpha multiplies the opacity
-    uint padding[3];
+    uint one_sided;       // 1 if only the outward side emits
+    uint padding[2];
 };
 layout(set = 0, binding = 5, std430) readonly buffer Materials { Material materials[]; };
 
@@ -93,7 +94,7 @@ struct Luminaire {
     vec4 a;            // point: position; infinite: unit vector towards the light; area: first corner
     vec4 b;            // area: second corner; w: area
     vec4 c;            // area: third corner; w: bound on the error of a point on the triangle, in each coordinate
-    vec4 normal;       // area: unit normal
+    vec4 normal;       // area: unit outward normal; w: 1 if only that side emits
     vec4 radiance;     // intensity, irradiance or radiance (without its texture); w: probability of being chosen
     uint kind;
     uint threshold;    // alias table

@@ -93,6 +93,7 @@ Material material_at(Surfel s) {
         if (GLOSSY && material.maps.z != NONE) material.glossy.rgb *= texture_at(material.maps.z, s.uv).rgb;
         if (AREA_LUMINAIRES && material.maps.w != NONE) material.emission.rgb *= texture_at(material.maps.w, s.uv).rgb;
     }
+    if (AREA_LUMINAIRES && material.one_sided != 0u && !s.front) material.emission.rgb = vec3(0.0);
     return material;
 }
 

@@ -17,7 +17,7 @@ vec4 texture_at(uint map, vec2 uv) {
     uvec4 image = texelFetch(textures, int(map));
     ivec2 size = ivec2(image.yz);
     // By the bits: a compiler may assume that no float is infinite.
-    if (any(equal(floatBitsToUint(uv) & 0x7f800000u, uvec2(0x7f800000u)))) uv = vec2(0.0);
+    uv = mix(uv, vec2(0.0), equal(floatBitsToUint(uv) & 0x7f800000u, uvec2(0x7f800000u)));
     bool clamped = image.w != 0u;
     uv = clamped ? clamp(uv, vec2(0.0), vec2(1.0)) : uv - floor(uv);
     vec2 p = vec2(uv.x, 1.0 - uv.y) * vec2(size) - 0.5;

@@ -14,8 +14,6 @@ const STAGING: u64 = 64 << 20;
 /// A buffer with its memory.
 pub struct Buffer {
     pub(crate) raw: vk::Buffer,
-    /// Bytes asked for.
-    pub(crate) size: u64,
     allocation: Option<Allocation>,
     pub(crate) device: Arc<Device>,
 }
@@ -33,7 +31,7 @@ impl Buffer {
         let info = vk::BufferCreateInfo::default().size(size).usage(usage);
         // SAFETY: the device is alive; `info` has no pointers.
         let raw = unsafe { device.raw.create_buffer(&info, None) }.map_err(|e| device.error("vkCreateBuffer", e))?;
-        let mut buffer = Buffer { raw, size, allocation: None, device: device.clone() };
+        let mut buffer = Buffer { raw, allocation: None, device: device.clone() };
         device.set_name(raw, name);
         // SAFETY: the buffer was made from this device.
         let requirements = unsafe { device.raw.get_buffer_memory_requirements(raw) };

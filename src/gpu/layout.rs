@@ -111,8 +111,10 @@ shared! {
         maps: [u32; 4],
         /// Texture whose alpha multiplies the opacity.
         opacity_map: u32,
+        /// 1 if only the outward side emits.
+        one_sided: u32,
         /// To a multiple of 16 bytes.
-        padding: [u32; 3],
+        padding: [u32; 2],
     }
 }
 
@@ -125,7 +127,7 @@ shared! {
         b: [f32; 4],
         /// Third corner; w: bound on the error of a point on the triangle, in each coordinate.
         c: [f32; 4],
-        /// Unit normal of the triangle; w unused.
+        /// Unit outward normal of the triangle; w: 1 if only that side emits.
         normal: [f32; 4],
         /// Intensity, irradiance or radiance without its texture; w: probability of being chosen.
         radiance: [f32; 4],

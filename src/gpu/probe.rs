@@ -8,6 +8,7 @@ use crate::Result;
 use crate::scene::Scene;
 use ash::vk;
 use gpu_allocator::MemoryLocation;
+use std::cell::RefCell;
 use std::sync::Arc;
 
 /// A function of `shaders/probe.comp`. Arguments and results are two `uvec4` a call, floats by their bits.
@@ -59,10 +60,16 @@ pub enum Function {
 /// Arguments or results of one call.
 pub type Call = [[u32; 4]; 2];
 
-/// The probe with a scene.
+/// Calls that run at once; more are run in pieces.
+const PIECE: usize = 1 << 18;
+
+/// The probe with a scene, compiled once for all functions.
 pub struct Probe {
-    kernel_scene: GpuScene,
-    ray_query: bool,
+    kernel: Kernel,
+    arguments: RefCell<Buffer>,
+    results: Buffer,
+    readback: Buffer,
+    _kernel_scene: GpuScene,
     device: Arc<Device>,
 }
 
@@ -73,7 +80,27 @@ impl Probe {
     /// As for [`super::GpuTracer::new`].
     pub fn new(device: &Arc<Device>, scene: &Scene, ray_query: bool) -> Result<Self> {
         let kernel_scene = GpuScene::new(device, scene, ray_query, |_| {})?;
-        Ok(Probe { kernel_scene, ray_query, device: device.clone() })
+        let size = (PIECE * size_of::<Call>()) as u64;
+        let buffer = |name: &str, usage, location| Buffer::new(device, name, size, usage, location);
+        let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
+        let (source, target) = (vk::BufferUsageFlags::TRANSFER_SRC, vk::BufferUsageFlags::TRANSFER_DST);
+        let arguments = buffer("probe in", storage, MemoryLocation::CpuToGpu)?;
+        let results = buffer("probe out", storage | source | target, MemoryLocation::GpuOnly)?;
+        let kernel = Kernel::new(
+            device,
+            Shader::probe(ray_query),
+            &kernel_scene.model.constants(),
+            &kernel_scene.bindings(&results, &arguments),
+            size_of::<layout::Call>() as u32,
+        )?;
+        Ok(Probe {
+            kernel,
+            arguments: RefCell::new(arguments),
+            results,
+            readback: buffer("probe readback", target, MemoryLocation::GpuToCpu)?,
+            _kernel_scene: kernel_scene,
+            device: device.clone(),
+        })
     }
 
     /// Calls `function` once for each of `arguments`.
@@ -82,33 +109,19 @@ impl Probe {
     /// If the driver fails.
     pub fn call(&self, function: Function, arguments: &[Call]) -> Result<Vec<Call>> {
         let device = &self.device;
-        let input = Buffer::storage(device, "probe in", arguments)?;
-        let result_usage = vk::BufferUsageFlags::STORAGE_BUFFER
-            | vk::BufferUsageFlags::TRANSFER_SRC
-            | vk::BufferUsageFlags::TRANSFER_DST;
-        let output = Buffer::new(device, "probe out", input.size, result_usage, MemoryLocation::GpuOnly)?;
-        let readback = Buffer::new(
-            device,
-            "probe readback",
-            input.size,
-            vk::BufferUsageFlags::TRANSFER_DST,
-            MemoryLocation::GpuToCpu,
-        )?;
-        let push = layout::Call { function: function as u32, count: arguments.len() as u32 };
-        let kernel = Kernel::new(
-            device,
-            Shader::probe(self.ray_query),
-            &self.kernel_scene.model.constants(),
-            &self.kernel_scene.bindings(&output, &input),
-            size_of::<layout::Call>() as u32,
-        )?;
-        commands::submit(device, "probe", |cmd| {
-            let recorder = Recorder { device, cmd };
-            recorder.clear(&output);
-            recorder.dispatch(&kernel, bytemuck::bytes_of(&push), [push.count.div_ceil(64), 1, 1]);
-            recorder.read_back(&output, input.size, &readback, 0);
-        })?;
-        let bytes = &readback.mapped()?[..size_of_val(arguments)];
-        Ok(bytemuck::pod_collect_to_vec(bytes))
+        let mut results = Vec::with_capacity(arguments.len());
+        for piece in arguments.chunks(PIECE) {
+            let bytes: &[u8] = bytemuck::cast_slice(piece);
+            self.arguments.borrow_mut().mapped_mut()?[..bytes.len()].copy_from_slice(bytes);
+            let push = layout::Call { function: function as u32, count: piece.len() as u32 };
+            commands::submit(device, "probe", |cmd| {
+                let recorder = Recorder { device, cmd };
+                recorder.clear(&self.results);
+                recorder.dispatch(&self.kernel, bytemuck::bytes_of(&push), [push.count.div_ceil(64), 1, 1]);
+                recorder.read_back(&self.results, bytes.len() as u64, &self.readback, 0);
+            })?;
+            results.extend(bytemuck::pod_collect_to_vec::<u8, Call>(&self.readback.mapped()?[..bytes.len()]));
+        }
+        Ok(results)
     }
 }

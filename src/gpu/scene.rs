@@ -155,7 +155,8 @@ fn material(scene: &Scene, table: &LuminaireTable, index: usize) -> layout::Mate
         transmission: vec4(transmission, f64::from(material.opacity)),
         maps: [map(maps.ambient), map(maps.lambert), map(maps.glossy), map(maps.emission)],
         opacity_map: map(maps.opacity),
-        padding: [0; 3],
+        one_sided: u32::from(material.one_sided),
+        padding: [0; 2],
     }
 }
 
@@ -181,13 +182,13 @@ fn luminaires(scene: &Scene, table: &LuminaireTable, places: &[MeshBvh]) -> Vec<
                     place_of[mesh] = inverse(&places[mesh]);
                 }
                 let [a, b, c] = triangle.vertices;
-                let normal = (b - a).cross(c - a).normalize_or_zero();
+                let one_sided = scene.materials[triangle.material as usize].one_sided;
                 let [a, b, c] = [a, b, c].map(|v| v.as_vec3());
                 layout::Luminaire {
                     a: vec4(a, 0.0),
                     b: vec4(b, triangle.area()),
                     c: vec4(c, position_error(scene, triangle)),
-                    normal: vec4(normal.as_vec3(), 0.0),
+                    normal: vec4(triangle.normal.as_vec3(), f64::from(u8::from(one_sided))),
                     radiance: vec4(scene.materials[triangle.material as usize].emission, pdf),
                     kind: 2,
                     triangle: place_of[mesh][triangle.triangle as usize],

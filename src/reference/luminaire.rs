@@ -98,8 +98,6 @@ impl Reference {
         if surfel.owner == [triangle.object, triangle.triangle] {
             return None;
         }
-        let [a, b, c] = triangle.vertices;
-        let normal = (b - a).cross(c - a).normalize_or_zero();
         let weights = match self.near_solid_angle(surfel.position, triangle.vertices) {
             Some(_) => {
                 let wi = spherical_triangle(seen_from(surfel.position, triangle.vertices), u, v);
@@ -109,10 +107,13 @@ impl Reference {
         };
         let point = interpolate(weights, triangle.vertices);
         let wi = (point - surfel.position).try_normalize()?;
+        if self.scene.materials[triangle.material as usize].one_sided && triangle.normal.dot(wi) > 0.0 {
+            return None;
+        }
         let pdf = probability * self.triangle_density(surfel.position, triangle.vertices, point);
         // Both ends are inexact.
         let origin = surfel.offset_ray_origin(wi);
-        let target = offset_ray_origin(point, position_error(triangle.vertices), normal, -wi);
+        let target = offset_ray_origin(point, position_error(triangle.vertices), triangle.normal, -wi);
         Some(Unoccluded {
             wi,
             irradiance: self.emission_at(triangle, weights) / pdf,

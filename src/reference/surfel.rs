@@ -88,7 +88,11 @@ impl Reference {
             shading_normal,
             uv,
             front,
-            emission: material.emission.as_dvec3() * map(material.maps.emission),
+            emission: if front || !material.one_sided {
+                material.emission.as_dvec3() * map(material.maps.emission)
+            } else {
+                DVec3::ZERO
+            },
             ambient: material.ambient.as_dvec3() * map(material.maps.ambient),
             lambert: material.lambert.as_dvec3() * map(material.maps.lambert),
             glossy: material.glossy.as_dvec3() * map(material.maps.glossy),

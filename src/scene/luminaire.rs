@@ -1,6 +1,6 @@
 //! Every luminaire of a scene in one table, one of which is chosen by its power.
 
-use super::{EnvironmentDistribution, Luminaire, Material, Scene};
+use super::{EnvironmentDistribution, Luminaire, Material, Mesh, Scene, Triangle};
 use crate::sampling::AliasTable;
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 use std::f64::consts::PI;
@@ -14,8 +14,10 @@ pub struct EmissiveTriangle {
     pub triangle: u32,
     /// World-space corners.
     pub vertices: [DVec3; 3],
-    /// Index into [`Scene::materials`], which knows what it emits, on both sides.
+    /// Index into [`Scene::materials`], which knows what it emits.
     pub material: u32,
+    /// Unit normal on the outward side, the only one that emits where the material is one-sided.
+    pub normal: DVec3,
 }
 
 impl EmissiveTriangle {
@@ -66,8 +68,10 @@ impl LuminaireTable {
                 }
                 let vertices =
                     triangle.vertices.map(|v| to_world.transform_point3(mesh.positions[v as usize].as_dvec3()));
+                let normal = to_world.matrix3.inverse().transpose() * outward(mesh, triangle);
+                let normal = normal.normalize_or_zero();
                 let (object, triangle) = (object_index as u32, triangle_index as u32);
-                entries.push(SampledLuminaire::Area(EmissiveTriangle { object, triangle, vertices, material }));
+                entries.push(SampledLuminaire::Area(EmissiveTriangle { object, triangle, vertices, material, normal }));
             }
         }
         let (low, high) = scene.world_bounds();
@@ -117,10 +121,20 @@ pub(crate) fn widen(map: glam::Affine3A) -> DAffine3 {
     }
 }
 
-/// Power that a surface of this material emits for each unit of area, on both sides, averaged over the channels and over its texture.
+/// A vector along the outward normal, in object space: where the winding is counter-clockwise, unless the vertex normals know better.
+fn outward(mesh: &Mesh, triangle: &Triangle) -> DVec3 {
+    let [a, b, c] = triangle.vertices.map(|v| mesh.positions[v as usize].as_dvec3());
+    let winding = (b - a).cross(c - a);
+    let normals = triangle.vertices.map(|v| mesh.normals.get(v as usize).map_or(DVec3::ZERO, |n| n.as_dvec3()));
+    let known = normals.iter().all(|n| *n != DVec3::ZERO);
+    if known && normals.iter().sum::<DVec3>().dot(winding) < 0.0 { -winding } else { winding }
+}
+
+/// Power that a surface of this material emits for each unit of area, averaged over the channels and over its texture.
 fn exitance(scene: &Scene, material: &Material) -> f64 {
     let texture = material.maps.emission.map_or(DVec3::ONE, |map| scene.textures[map as usize].mean());
-    2.0 * PI * (material.emission.as_dvec3() * texture).element_sum() / 3.0
+    let sides = if material.one_sided { 1.0 } else { 2.0 };
+    sides * PI * (material.emission.as_dvec3() * texture).element_sum() / 3.0
 }
 
 /// The radiant power of a luminaire without an area that may reach the scene, averaged over the channels; the scene lies in the sphere

@@ -26,6 +26,8 @@ pub(super) struct Draft {
     pub exponent: Option<f32>,
     /// `Ke`.
     pub emission: Option<Vec3>,
+    /// Whether only the outward side emits.
+    pub one_sided: Option<bool>,
     /// Albedo of the impulse reflection.
     pub reflection: Option<Vec3>,
     /// Albedo of the impulse transmission.
@@ -97,6 +99,7 @@ impl Draft {
         self.glossy = other.glossy.or(self.glossy);
         self.exponent = other.exponent.or(self.exponent);
         self.emission = other.emission.or(self.emission);
+        self.one_sided = other.one_sided.or(self.one_sided);
         self.reflection = other.reflection.or(self.reflection);
         self.transmission = other.transmission.or(self.transmission);
         self.eta = other.eta.or(self.eta);
@@ -142,6 +145,7 @@ impl Draft {
             glossy,
             exponent: self.exponent.unwrap_or(DEFAULT_EXPONENT),
             emission,
+            one_sided: self.one_sided.unwrap_or(false),
             reflection,
             transmission,
             eta: self.eta,

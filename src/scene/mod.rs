@@ -123,8 +123,11 @@ pub struct Material {
     pub glossy: Vec3,
     /// Blinn-Phong exponent, >= 0 (`Ns`).
     pub exponent: f32,
-    /// Emitted radiance, on both sides (`Ke`).
+    /// Emitted radiance (`Ke`).
     pub emission: Vec3,
+    /// Whether only the outward side emits: the one from which the corners are seen counter-clockwise, or to which the vertex normals
+    /// point.
+    pub one_sided: bool,
     /// Albedo of the impulse reflection: all of it at every angle without `eta` (a mirror), times Fresnel's reflectance with it.
     pub reflection: Vec3,
     /// Albedo of the impulse transmission, times one minus Fresnel's reflectance (`Tf`); zero without `eta`.
@@ -327,6 +330,7 @@ impl Default for Material {
             glossy: Vec3::ZERO,
             exponent: 0.0,
             emission: Vec3::ZERO,
+            one_sided: false,
             reflection: Vec3::ZERO,
             transmission: Vec3::ZERO,
             eta: None,

@@ -145,6 +145,7 @@ impl File<'_> {
                 glossy: table.glossy.map(|colour| colour.0),
                 exponent: table.exponent.map(|exponent| exponent.0),
                 emission: table.emission.map(|colour| colour.0),
+                one_sided: table.one_sided,
                 reflection: table.reflection.map(|colour| colour.0),
                 transmission: table.transmission.map(|colour| colour.0),
                 eta: table.eta.map(|eta| eta.0),

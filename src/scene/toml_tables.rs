@@ -127,6 +127,7 @@ pub(super) struct MaterialTable {
     pub glossy: Option<Colour>,
     pub exponent: Option<Exponent>,
     pub emission: Option<Colour>,
+    pub one_sided: Option<bool>,
     pub reflection: Option<Colour>,
     pub transmission: Option<Colour>,
     pub eta: Option<Positive>,

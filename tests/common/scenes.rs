@@ -252,6 +252,12 @@ pub fn textured_room(width: u32, height: u32) -> Scene {
     let mut glow = lamp(Vec3::splat(3.0));
     glow.maps.emission = Some(1);
     add(&mut scene, screen, glow, Affine3A::IDENTITY);
+    // A lamp that emits downwards only, in an instance that mirrors.
+    let one_sided = Material { one_sided: true, ..lamp(Vec3::new(2.0, 4.0, 8.0)) };
+    let lamp_below = quad(Vec3::new(-0.25, 0.0, -0.25), Vec3::X * 0.5, Vec3::Z * 0.5);
+    let mirrored =
+        Affine3A::from_translation(Vec3::new(0.75, 1.0, -1.25)) * Affine3A::from_scale(Vec3::new(-1.0, 1.0, 1.0));
+    add(&mut scene, lamp_below, one_sided, mirrored);
     let curtain = with_uvs(quad(Vec3::new(-1.25, 0.25, -0.5), Vec3::X, Vec3::Y));
     let mut cloth = matte(Vec3::new(0.5, 0.6, 0.7));
     cloth.maps.opacity = Some(2);

@@ -35,15 +35,38 @@ impl Estimate {
         self.assert_within(expected, expected, resolution);
     }
 
+    /// `p` of a true mean that is only known to lie in an interval.
+    pub fn p_within(self, low: f64, high: f64) -> f64 {
+        let off = (self.mean - self.mean.clamp(low, high)).abs();
+        // Rounding is all that is left where the samples do not vary.
+        if off <= 1e-12 * high.abs() { 1.0 } else { two_sided(off / self.error) }
+    }
+
     /// The same for a true mean that is only known to lie in an interval.
     pub fn assert_within(self, low: f64, high: f64, resolution: f64) {
         let Estimate { mean, error } = self;
         assert!(error <= resolution * low, "{mean} +- {error} is not sharp enough about [{low}, {high}]");
-        let off = (mean - mean.clamp(low, high)).abs();
-        // Rounding is all that is left where the samples do not vary.
-        let p = if off <= 1e-12 * high { 1.0 } else { two_sided(off / error) };
+        let p = self.p_within(low, high);
         assert!(p >= SIGNIFICANCE, "{mean} +- {error}, expected [{low}, {high}]: p = {p:.1e}");
     }
+}
+
+/// Fails if the smallest of several independent `p`s is too small for their number (Sidak), and says which.
+pub fn assert_plausible(tests: &[(String, f64)]) {
+    let (name, smallest) = tests.iter().min_by(|a, b| a.1.total_cmp(&b.1)).expect("some tests");
+    let p = sidak(*smallest, tests.len());
+    println!("{} tests, the least plausible is {name}: p = {smallest:.1e}, among so many {p:.1e}", tests.len());
+    assert!(p >= SIGNIFICANCE, "{name}: p = {smallest:.1e}, among {} tests {p:.1e}", tests.len());
+}
+
+/// Counts points in 20 x 20 cells of the unit square.
+pub fn count_in_square(points: impl Iterator<Item = (f64, f64)>) -> Vec<u32> {
+    let mut counts = vec![0; 400];
+    for (x, y) in points {
+        assert!((0.0..=1.0).contains(&x) && (0.0..=1.0).contains(&y), "({x}, {y})");
+        counts[((x * 20.0) as usize).min(19) * 20 + ((y * 20.0) as usize).min(19)] += 1;
+    }
+    counts
 }
 
 /// `p` of a standard normal variable.

@@ -2,7 +2,6 @@
 
 use super::*;
 use crate::common::scenes::*;
-use crate::common::statistics::{SIGNIFICANCE, chi_square};
 use glam::{Affine3A, DVec3, Vec3};
 use luminaire::gpu::probe::{Call, Function, Probe};
 use luminaire::reference::warp;
@@ -12,17 +11,29 @@ use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 
 /// A scene with lights of all kinds, and a glossy material.
-fn scene() -> luminaire::scene::Scene {
+pub fn scene() -> luminaire::scene::Scene {
     let mut scene = cornell_like(4, 4);
     scene.luminaires.push(Luminaire::Infinite { direction: -Vec3::Y, irradiance: Vec3::ONE });
     scene
 }
 
-fn floats(bits: [u32; 4]) -> [f64; 4] {
+/// The numbers that these are the bits of.
+pub fn floats(bits: [u32; 4]) -> [f64; 4] {
     bits.map(|b| f64::from(f32::from_bits(b)))
 }
 
-fn units(rng: &mut StdRng) -> [f32; 2] {
+/// A vector, without what follows it.
+pub fn vector(bits: [u32; 4]) -> DVec3 {
+    DVec3::from_slice(&floats(bits))
+}
+
+/// The bits of numbers.
+pub fn call(x: [f32; 4], y: [f32; 4]) -> Call {
+    [x.map(f32::to_bits), y.map(f32::to_bits)]
+}
+
+/// Two numbers as the samplers draw them.
+pub fn units(rng: &mut StdRng) -> [f32; 2] {
     // Multiples of 2^-24, as the samplers draw them, the extremes included.
     [0, 1].map(|_| match rng.random_range(0..50) {
         0 => 0.0,
@@ -88,30 +99,6 @@ fn warps_match_to_rounding() {
             let found = DVec3::from_slice(&floats(triangle[0]));
             assert!((found - expected).abs().max_element() < 1.2e-7, "({u}, {v}): {found} {expected}");
         }
-    });
-}
-
-/// The GPU's own directions have the density cos / pi: equal counts in 16 x 32 cells of equal probability.
-#[test]
-fn directions_are_cosine_distributed() {
-    let calls: Vec<Call> = (0..400_000)
-        .map(|i| {
-            let random = random4(i, 0, 0, 4);
-            [[0, 1, 2, 3].map(|k| (uniform(random[k]) as f32).to_bits()), [0; 4]]
-        })
-        .collect();
-    on_every_backend(|backend| {
-        let probe = Probe::new(&backend.device, &scene(), backend.ray_query).expect("a probe");
-        let mut counts = vec![0u32; 16 * 32];
-        for result in probe.call(Function::CosineHemisphere, &calls).expect("the probe runs") {
-            let [x, y, z, _] = floats(result[0]);
-            // Under that density z^2 and the azimuth are uniform.
-            let azimuth = y.atan2(x) / std::f64::consts::TAU + 0.5;
-            let cell = |u: f64, n: usize| ((u * n as f64) as usize).min(n - 1);
-            counts[cell(z * z, 16) * 32 + cell(azimuth, 32)] += 1;
-        }
-        let p = chi_square(&counts);
-        assert!(p >= SIGNIFICANCE, "{}: p = {p:e}", backend.name());
     });
 }
 

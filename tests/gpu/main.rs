@@ -6,14 +6,18 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod densities;
 mod estimators;
 mod fallback;
 mod features;
 mod functions;
 mod intersection;
+mod maps;
 mod pictures;
+mod scattering;
 mod scenes;
 mod sensor;
+mod twins;
 
 use luminaire::gpu::{Device, GpuTracer, Instance, validation_messages};
 use luminaire::scene::Scene;

@@ -1,29 +1,14 @@
 //! The environment: lookup, density, and directions.
 
+use crate::common::directions::*;
 use crate::common::scenes::*;
 use crate::common::statistics::*;
 use crate::transport::means;
 use glam::{Affine3A, DVec3, Vec3};
 use luminaire::reference::Reference;
-use luminaire::sampling::{random4, uniform};
+use luminaire::sampling::random4;
 use luminaire::scene::*;
 use std::f64::consts::{PI, TAU};
-
-const WIDTH: u32 = 8;
-const HEIGHT: u32 = 5;
-
-/// An image with a sun, dark texels and black ones, turned by 37 degrees.
-fn sky() -> Environment {
-    let mut texels: Vec<Vec3> = (0..WIDTH * HEIGHT)
-        .map(|i| {
-            let [r, g, b, dark] = random4(i, 0, 0, 5).map(|r| uniform(r) as f32);
-            if dark < 0.3 { Vec3::ZERO } else { Vec3::new(r, g, b) }
-        })
-        .collect();
-    texels[WIDTH as usize + 3] = Vec3::new(60.0, 50.0, 40.0);
-    let image = EnvironmentImage { name: "sky".into(), width: WIDTH, height: HEIGHT, texels };
-    Environment { radiance: Vec3::new(0.5, 1.0, 2.0), image: Some(image), rotation: 37.0 }
-}
 
 fn under(environment: Environment) -> Scene {
     let mut scene = empty(8, 8);
@@ -31,17 +16,6 @@ fn under(environment: Environment) -> Scene {
     add(&mut scene, cube(), matte(Vec3::splat(0.5)), Affine3A::from_translation(Vec3::Z * 10.0));
     scene.environment = Some(environment);
     scene
-}
-
-fn direction(phi: f64, cos: f64) -> DVec3 {
-    let sin = (1.0 - cos * cos).sqrt();
-    DVec3::new(sin * phi.sin(), cos, -sin * phi.cos())
-}
-
-/// Where a direction is in the image, in texels, by hand.
-fn position(w: DVec3, rotation: f64) -> (f64, f64) {
-    let phi = w.x.atan2(-w.z).to_degrees();
-    (((phi + 180.0 + rotation) / 360.0).rem_euclid(1.0) * f64::from(WIDTH), w.y.acos() / PI * f64::from(HEIGHT))
 }
 
 /// The middle of the image is -z, the right half +x, the top +y; turned by 90 degrees counter-clockwise from above, the middle is -x.
@@ -81,17 +55,8 @@ fn lookup_at_known_directions() {
 #[test]
 fn directions_have_their_density() {
     const N: u32 = 400_000;
-    const PARTS: usize = 3;
     let tracer = Reference::new(&under(sky()));
-    let (columns, rows) = (WIDTH as usize * PARTS, HEIGHT as usize * PARTS);
-    let mut expected = vec![0.0; columns * rows];
-    let edge = |row: usize| (PI * row as f64 / rows as f64).cos();
-    for (i, expected) in expected.iter_mut().enumerate() {
-        let (column, row) = (i % columns, i / columns);
-        let phi = TAU * ((column as f64 + 0.5) / columns as f64 - 0.5 - 37.0 / 360.0);
-        let density = tracer.environment_density(direction(phi, 0.5 * (edge(row) + edge(row + 1))));
-        *expected = density * TAU / columns as f64 * (edge(row) - edge(row + 1));
-    }
+    let mut expected = shares_of_sky(|w| tracer.environment_density(w));
     let mass: f64 = expected.iter().sum();
     assert!((mass - 1.0).abs() < 1e-12, "the density integrates to {mass}");
     expected.iter_mut().for_each(|share| *share *= f64::from(N));
@@ -99,9 +64,7 @@ fn directions_have_their_density() {
     for i in 0..N {
         let wi = tracer.sample_environment(random4(i, 0, 1, 7)).expect("not black");
         assert!((wi.length() - 1.0).abs() < 1e-14);
-        let (x, y) = position(wi, 37.0);
-        let cell = |x: f64, n: usize| ((x * PARTS as f64) as usize).min(n - 1);
-        counts[cell(y, rows) * columns + cell(x, columns)] += 1;
+        counts[part_of_sky(wi)] += 1;
     }
     let p = chi_square_against(&counts, &expected);
     assert!(p >= SIGNIFICANCE, "p = {p:.1e}");
@@ -114,7 +77,7 @@ fn directions_find_all_light() {
     let mut integral = 0.0;
     let n = 800;
     for i in 0..n * n {
-        let w = direction(
+        let w = sky_direction(
             (f64::from(i % n) + 0.5) / f64::from(n) * TAU,
             1.0 - 2.0 * (f64::from(i / n) + 0.5) / f64::from(n),
         );

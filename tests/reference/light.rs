@@ -228,3 +228,48 @@ fn light_does_not_leak_through_closed_walls() {
     let image = render(&mut Reference::new(&scene), 16, 16, 64, 2);
     assert!(image.mean.iter().all(|p| p[0] > 0.0), "and are lit from inside");
 }
+
+/// A one-sided lamp lights and is seen from its outward side only: the side from which its corners are counter-clockwise, also where an
+/// instance mirrors it; and the vertex normals overrule the winding.
+#[test]
+fn one_sided_lamps() {
+    use luminaire::scene::Material;
+    // Counter-clockwise as seen from +y.
+    let panel = quad(Vec3::new(-0.5, 0.0, 0.5), Vec3::X, -Vec3::Z);
+    let mirror = Affine3A::from_scale(Vec3::new(-1.0, 1.0, 1.0));
+    let flip = Affine3A::from_scale(Vec3::new(1.0, -1.0, 1.0));
+    for (place, normal, above) in [
+        (Affine3A::IDENTITY, None, true),
+        (mirror, None, true),
+        (flip, None, false),
+        (Affine3A::IDENTITY, Some(-Vec3::Y), false),
+        (mirror, Some(-Vec3::Y), false),
+    ] {
+        // Floor and ceiling at the same distance; the sensor sees one of them, or the lamp.
+        for (eye, target, seen) in [
+            (Vec3::new(0.0, -0.5, 0.125), Vec3::new(0.0, -1.0, 0.0), !above),
+            (Vec3::new(0.0, 0.5, 0.125), Vec3::new(0.0, 1.0, 0.0), above),
+            (Vec3::new(0.0, -0.5, 0.125), Vec3::ZERO, !above),
+            (Vec3::new(0.0, 0.5, 0.125), Vec3::ZERO, above),
+        ] {
+            let mut scene = empty(4, 4);
+            scene.sensor = pinhole(eye, target, Vec3::Z, 1.0);
+            let mut lamp_mesh = panel.clone();
+            lamp_mesh.normals = normal.map_or(vec![], |n| vec![n; 4]);
+            add(&mut scene, lamp_mesh, Material { one_sided: true, ..lamp(Vec3::ONE) }, place);
+            for y in [-1.0, 1.0] {
+                let plane = quad(Vec3::new(-9.0, y, -9.0), Vec3::X * 18.0, Vec3::Z * 18.0);
+                add(&mut scene, plane, matte(Vec3::splat(0.5)), Affine3A::IDENTITY);
+            }
+            for name in ["default", "cosine", "no-light-sampling"] {
+                let estimator = Estimator { max_bounces: Some(0), ..Estimator::preset(name).expect("a preset") };
+                scene.integrator = Integrator::Path(estimator);
+                let tracer = Reference::new(&scene);
+                let lit = (0..16)
+                    .flat_map(|p| (0..64).map(move |s| (p, s)))
+                    .any(|(p, s)| tracer.radiance(p, s).0 != DVec3::ZERO);
+                assert_eq!(lit, seen, "{name}, {place:?}, {normal:?}, from {eye} to {target}");
+            }
+        }
+    }
+}

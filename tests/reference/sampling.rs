@@ -1,5 +1,6 @@
 //! Random directions and points against the densities they claim, the scattering function, and the sensor.
 
+use crate::common::directions::*;
 use crate::common::scenes::*;
 use crate::common::statistics::*;
 use glam::{Affine3A, DVec3, Mat3, Vec3};
@@ -13,16 +14,12 @@ use std::f64::consts::PI;
 
 const N: u32 = 400_000;
 
-/// Counts `N` samples in 20 x 20 cells of the unit square.
+/// Counts `N` mapped points of the unit square.
 pub fn histogram(map: impl Fn(f64, f64) -> (f64, f64)) -> Vec<u32> {
-    let mut counts = vec![0; 400];
-    for i in 0..N {
+    count_in_square((0..N).map(|i| {
         let random = random4(i, 7, 3, 1);
-        let (x, y) = map(uniform(random[0]), uniform(random[1]));
-        assert!((0.0..=1.0).contains(&x) && (0.0..=1.0).contains(&y), "({x}, {y})");
-        counts[((x * 20.0) as usize).min(19) * 20 + ((y * 20.0) as usize).min(19)] += 1;
-    }
-    counts
+        map(uniform(random[0]), uniform(random[1]))
+    }))
 }
 
 fn normals() -> Vec<DVec3> {
@@ -77,27 +74,6 @@ fn chi_square_has_power() {
         (w.z, w.y.atan2(w.x).rem_euclid(2.0 * PI) / (2.0 * PI))
     }));
     assert!(p < 1e-12, "p = {p}");
-}
-
-/// Share of the light from `wo` that is scattered: the midpoint rule over half vectors, spaced evenly under the density
-/// `(m + 1) / 2 pi * cos^m`, so that lobes of every width are resolved.
-pub fn directional_albedo(surfel: &Surfel, wo: DVec3) -> f64 {
-    let (n, m) = (600, surfel.exponent);
-    let mut sum = 0.0;
-    for i in 0..n {
-        let cos = ((f64::from(i) + 0.5) / f64::from(n)).powf(1.0 / (m + 1.0));
-        let sin = (1.0 - cos * cos).sqrt();
-        let pdf = (m + 1.0) / (2.0 * PI) * cos.powf(m);
-        for j in 0..n {
-            let phi = (f64::from(j) + 0.5) / f64::from(n) * 2.0 * PI;
-            let h = DVec3::new(sin * phi.cos(), sin * phi.sin(), cos);
-            let wi = 2.0 * wo.dot(h) * h - wo;
-            if wo.dot(h) > 0.0 && wi.z > 0.0 {
-                sum += surfel.bsdf(wo, wi).x * wi.z * 4.0 * wo.dot(h) / pdf;
-            }
-        }
-    }
-    sum / f64::from(n * n)
 }
 
 /// The glossy lobe creates no energy: its albedo is 1 at normal incidence and never more. The quadrature is good to 1e-4 (the edge where

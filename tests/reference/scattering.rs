@@ -1,9 +1,10 @@
 //! Directions against their densities: hemispheres, lobes, mixtures, triangles. Every chi-square test and every mean has the
 //! significance 1e-4.
 
+use crate::common::directions::*;
 use crate::common::scenes::*;
 use crate::common::statistics::*;
-use crate::sampling::{directional_albedo, histogram};
+use crate::sampling::histogram;
 use glam::{Affine3A, DVec3};
 use luminaire::reference::Reference;
 use luminaire::reference::scatter::{bsdf_pdf, scatter};
@@ -11,24 +12,12 @@ use luminaire::reference::surfel::Surfel;
 use luminaire::reference::warp::*;
 use luminaire::sampling::{random4, uniform};
 use luminaire::scene::{AreaSampling, Directions, Scene};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 const N: u32 = 300_000;
-const EXPONENTS: [f64; 5] = [0.0, 1.0, 20.0, 1e3, 1e5];
 
 fn numbers(i: u32, block: u32) -> [f64; 4] {
     random4(i, 3, block, 11).map(uniform)
-}
-
-/// A viewing direction so many degrees from +z.
-fn tilted(degrees: f64) -> DVec3 {
-    DVec3::new(degrees.to_radians().sin(), 0.0, degrees.to_radians().cos())
-}
-
-/// Azimuth about `n` as a share of a full turn.
-fn azimuth(n: DVec3, w: DVec3) -> f64 {
-    let (t, b) = frame(n);
-    (w.dot(b).atan2(w.dot(t)) / TAU).rem_euclid(1.0)
 }
 
 #[test]
@@ -57,43 +46,6 @@ fn glossy_half_vectors_have_their_density() {
             }));
             assert!(p >= SIGNIFICANCE, "m = {m} about {n}: p = {p:.1e}");
         }
-    }
-}
-
-/// Cells of the sphere about the direction `axis`, narrower near it: the cosine is `1 - 2 s^power`.
-struct Cells {
-    axis: DVec3,
-    power: i32,
-}
-
-impl Cells {
-    const S: usize = 30;
-    const PHI: usize = 16;
-
-    fn cell(&self, w: DVec3) -> usize {
-        // `1 - cos` without cancellation.
-        let s = (0.25 * (w - self.axis).length_squared()).powf(1.0 / f64::from(self.power));
-        let cell = |x: f64, n: usize| ((x * n as f64) as usize).min(n - 1);
-        cell(s, Self::S) * Self::PHI + cell(azimuth(self.axis, w), Self::PHI)
-    }
-
-    /// Integral of a density over each cell, by the midpoint rule.
-    fn integrate(&self, density: impl Fn(DVec3) -> f64) -> Vec<f64> {
-        const SUB: usize = 24;
-        let (t, b) = frame(self.axis);
-        let mut cells = vec![0.0; Self::S * Self::PHI];
-        for i in 0..Self::S * SUB {
-            let s = (i as f64 + 0.5) / (Self::S * SUB) as f64;
-            let rest = 2.0 * s.powi(self.power);
-            let measure = 2.0 * f64::from(self.power) * s.powi(self.power - 1) / (Self::S * SUB) as f64;
-            for j in 0..Self::PHI * SUB {
-                let phi = TAU * (j as f64 + 0.5) / (Self::PHI * SUB) as f64;
-                let sin = (rest * (2.0 - rest)).sqrt();
-                let w = sin * (phi.cos() * t + phi.sin() * b) + (1.0 - rest) * self.axis;
-                cells[i / SUB * Self::PHI + j / SUB] += density(w) * measure * TAU / (Self::PHI * SUB) as f64;
-            }
-        }
-        cells
     }
 }
 
@@ -236,30 +188,6 @@ fn bsdf_is_reciprocal_at_every_exponent() {
     }
 }
 
-/// Corners of triangles, and the point they are seen from: near, far, from the edge, large, tiny, narrow.
-fn triangles() -> Vec<([DVec3; 3], DVec3)> {
-    let unit = [DVec3::ZERO, DVec3::X, DVec3::Y];
-    vec![
-        (unit, DVec3::new(0.2, 0.3, 0.05)),
-        (unit, DVec3::new(0.3, 0.3, -1.0)),
-        (unit, DVec3::new(1.5, 1.5, 0.02)),
-        (unit, DVec3::new(-0.01, 0.5, 0.01)),
-        (unit, DVec3::new(2.0, -3.0, 2.0)),
-        ([DVec3::new(-50.0, -30.0, 1.0), DVec3::new(60.0, -40.0, 1.0), DVec3::new(0.0, 80.0, 1.5)], DVec3::ZERO),
-        ([DVec3::new(-2.0, 0.0, 1.0), DVec3::new(2.0, 0.0, 1.0), DVec3::new(0.0, 0.05, 1.0)], DVec3::ZERO),
-    ]
-}
-
-fn seen_from(from: DVec3, corners: [DVec3; 3]) -> [DVec3; 3] {
-    corners.map(|corner| (corner - from).normalize())
-}
-
-/// The excess of the angles of a spherical triangle over those of a plane one (Girard).
-fn girard([a, b, c]: [DVec3; 3]) -> f64 {
-    let angle = |at: DVec3, b: DVec3, c: DVec3| at.cross(b).angle_between(at.cross(c));
-    angle(a, b, c) + angle(b, c, a) + angle(c, a, b) - PI
-}
-
 #[test]
 fn solid_angles() {
     assert!((solid_angle([DVec3::X, DVec3::Y, DVec3::Z]) - 0.5 * PI).abs() < 1e-15);
@@ -278,49 +206,21 @@ fn solid_angles() {
 /// Directions fall into the parts of a triangle in proportion to the solid angle of the parts.
 #[test]
 fn spherical_triangles_are_sampled_evenly() {
-    const PARTS: usize = 12;
     for (index, (corners, from)) in triangles().into_iter().enumerate() {
-        let [a, b, c] = corners;
-        let omega = solid_angle(seen_from(from, corners));
-        let point = |i: usize, j: usize| a + (b - a) * (i as f64 / PARTS as f64) + (c - a) * (j as f64 / PARTS as f64);
-        let mut expected = vec![0.0; 2 * PARTS * PARTS];
-        for i in 0..PARTS {
-            for j in 0..PARTS - i {
-                let lower = [point(i, j), point(i + 1, j), point(i, j + 1)];
-                expected[2 * (i * PARTS + j)] = girard_or_flat(seen_from(from, lower)) / omega;
-                if i + j + 1 < PARTS {
-                    let upper = [point(i + 1, j + 1), point(i, j + 1), point(i + 1, j)];
-                    expected[2 * (i * PARTS + j) + 1] = girard_or_flat(seen_from(from, upper)) / omega;
-                }
-            }
-        }
-        let mass: f64 = expected.iter().sum();
-        assert!((mass - 1.0).abs() < 1e-6, "triangle {index}: the parts have {mass} of the whole");
+        let mut expected = shares_of_parts(corners, from);
         expected.iter_mut().for_each(|share| *share *= f64::from(N));
         let mut counts = vec![0; expected.len()];
-        let normal = (b - a).cross(c - a);
         for n in 0..N {
             let [u, v, ..] = numbers(n, 200 + index as u32);
             let wi = spherical_triangle(seen_from(from, corners), u, v);
             assert!((wi.length() - 1.0).abs() < 1e-12, "triangle {index}: {wi}");
-            let hit = from + wi * (a - from).dot(normal) / wi.dot(normal) - a;
-            // Weights of the second and third corner.
-            let s = hit.cross(c - a).dot(normal) / normal.length_squared() * PARTS as f64;
-            let t = (b - a).cross(hit).dot(normal) / normal.length_squared() * PARTS as f64;
-            assert!(s > -1e-6 && t > -1e-6 && s + t < PARTS as f64 + 1e-6, "triangle {index}: outside at {s}, {t}");
-            let (i, j) = ((s.max(0.0) as usize).min(PARTS - 1), (t.max(0.0) as usize).min(PARTS - 1));
-            let upper = usize::from(s.fract() + t.fract() > 1.0 && i + j + 1 < PARTS);
-            counts[2 * (i * PARTS + j.min(PARTS - 1 - i)) + upper] += 1;
+            let (part, outside) = part_of(corners, from, wi);
+            assert!(outside < 1e-7, "triangle {index}: outside by {outside}");
+            counts[part] += 1;
         }
         let p = chi_square_against(&counts, &expected);
         assert!(p >= SIGNIFICANCE, "triangle {index}: p = {p:.1e}");
     }
-}
-
-/// Girard's formula, or for triangles that are nearly flat, which it cannot tell from nothing, the area.
-fn girard_or_flat([a, b, c]: [DVec3; 3]) -> f64 {
-    let flat = 0.5 * (b - a).cross(c - a).length();
-    if flat < 1e-5 { flat } else { girard([a, b, c]) }
 }
 
 /// The densities per steradian of points on a triangle integrate to 1 over the directions to it, by area and by solid angle.

@@ -24,7 +24,7 @@ fn every_key_is_read() {
                 name = \"x\"\r\nmaterial = \"y\"\r\n[[material]]\r\nname = \"y\"\r\nambient = [0.1, 0.1, 0.1]\r\n\
                 diffuse = [0.2, 0.2, 0.2]\r\nglossy = [0.3, 0.3, 0.3]\r\nexponent = 40\r\nemission = [1, 2, 3]\r\n\
                 reflection = [0.125, 0.125, 0.125]\r\ntransmission = [0.25, 0.25, 0.25]\r\neta = 1.25\r\n\
-                impulse_probability = 0.75\r\nopacity = 0.5\r\n\
+                impulse_probability = 0.75\r\nopacity = 0.5\r\none_sided = true\r\n\
                 [[luminaire]]\r\nkind = \"infinite\"\r\ndirection = [0, -2, 0]\r\nirradiance = [1, 2, 3]\r\n";
     let scene = Folder::new().with("sub/mesh.obj", TRIANGLE).with("scene.toml", text).load("scene.toml");
     assert_eq!((scene.film.width, scene.film.height), (30, 20));
@@ -36,7 +36,7 @@ fn every_key_is_read() {
     let y = &scene.materials[scene.objects[0].material.expect("y") as usize];
     assert_eq!((y.ambient.x, y.lambert.x, y.glossy.x, y.exponent), (0.1, 0.2, 0.3, 40.0));
     assert_eq!((y.reflection.x, y.transmission.x, y.eta), (0.125, 0.25, Some(1.25)));
-    assert_eq!((y.impulse_probability, y.opacity), (Some(0.75), 0.5));
+    assert_eq!((y.impulse_probability, y.opacity, y.one_sided), (Some(0.75), 0.5, true));
     let light = Luminaire::Infinite { direction: Vec3::NEG_Y, irradiance: Vec3::new(1.0, 2.0, 3.0) };
     assert_eq!(scene.luminaires, [light]);
     assert_eq!(scene.warnings, Vec::<String>::new());
@@ -196,6 +196,7 @@ fn numbers_out_of_range_are_found_with_line_and_column() {
     toml_fails("[[material]]\nname = \"m\"\neta = inf\n", (3, 7), &["above 0"]);
     toml_fails("[[material]]\nname = \"m\"\nopacity = 1.5\n", (3, 11), &["from 0 to 1"]);
     toml_fails("[[material]]\nname = \"m\"\nimpulse_probability = -0.1\n", (3, 23), &["above 0 and below 1"]);
+    toml_fails("[[material]]\nname = \"m\"\nimpulse_probability = 1\n", (3, 23), &["above 0 and below 1"]);
     toml_fails("[[object]]\nmesh = \"mesh.obj\"\nsmooth = 181\n", (3, 10), &["0 to 180"]);
     toml_fails("[[object]]\nmesh = \"mesh.obj\"\nscale = \"big\"\n", (3, 9), &["a number or three numbers"]);
     toml_fails("[integrator]\nkind = \"path\"\nmax_bounces = -1\n", (3, 15), &["from 0 to 4294967295"]);

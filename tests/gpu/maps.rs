@@ -1,0 +1,164 @@
+//! Textures and the environment: what is looked up, and which directions are chosen.
+
+use super::functions::{call, floats, vector};
+use super::*;
+use crate::common::directions::*;
+use crate::common::scenes::*;
+use crate::common::statistics::*;
+use glam::{Affine3A, DVec2, DVec3, Vec3};
+use luminaire::gpu::probe::{Call, Function, Probe};
+use luminaire::reference::{Reference, texture::bilinear};
+use luminaire::sampling::{random4, uniform};
+use rand::rngs::StdRng;
+use rand::{RngExt, SeedableRng};
+
+/// Under a turned sky with a sun; textures of odd sizes, that repeat and that end.
+fn scene() -> Scene {
+    let mut scene = empty(4, 4);
+    let mut material = matte(Vec3::splat(0.5));
+    material.maps.lambert = Some(0);
+    add(&mut scene, cube(), material, Affine3A::IDENTITY);
+    scene.environment = Some(sky());
+    for (index, (width, height)) in [(1, 1), (2, 2), (5, 3), (1, 7), (64, 33)].into_iter().enumerate() {
+        for clamp in [false, true] {
+            let mut texture = texture(width, height, |x, y| {
+                random4(x, y, index as u32, 1).map(|number| (4.0 * uniform(number)) as f32)
+            });
+            texture.clamp = clamp;
+            scene.textures.push(texture);
+        }
+    }
+    scene
+}
+
+#[test]
+fn lookups_match_and_directions_have_their_density() {
+    let scene = scene();
+    let reference = Reference::new(&scene);
+    on_every_backend(|backend| {
+        let probe = Probe::new(&backend.device, &scene, backend.ray_query).expect("a probe");
+        textures(&probe, &scene);
+        environment(&probe, &reference);
+        sampled_directions(&probe, &reference);
+    });
+}
+
+/// Texture coordinates of all sorts: inside, outside, exactly on borders and centres, huge, and no numbers at all.
+fn textures(probe: &Probe, scene: &Scene) {
+    let mut rng = StdRng::seed_from_u64(21);
+    let special = [
+        0.0,
+        -0.0,
+        1.0,
+        0.5,
+        -1.0,
+        2.0,
+        -0.25,
+        0.1,
+        -1e-9,
+        1e-9,
+        1f32.next_down(),
+        1f32.next_up(),
+        1e4 + 0.37,
+        -12345.678,
+        3e9,
+        f32::MIN_POSITIVE,
+        f32::INFINITY,
+        f32::NEG_INFINITY,
+        f32::NAN,
+    ];
+    let mut calls: Vec<Call> = Vec::new();
+    for map in 0..scene.textures.len() as u32 {
+        let mut look = |u: f32, v: f32| calls.push([[map, u.to_bits(), v.to_bits(), 0], [0; 4]]);
+        special.iter().for_each(|u| special.iter().for_each(|v| look(*u, *v)));
+        for _ in 0..5000 {
+            look(rng.random_range(-3.0..4.0), rng.random_range(-3.0..4.0));
+            look(rng.random_range(-1e4..1e4), rng.random());
+        }
+    }
+    for (arguments, result) in calls.iter().zip(probe.call(Function::TextureAt, &calls).expect("the probe runs")) {
+        let texture = &scene.textures[arguments[0][0] as usize];
+        let [u, v] = [1, 2].map(|i| f64::from(f32::from_bits(arguments[0][i])));
+        let expected = bilinear(texture, DVec2::new(u, v)).to_array();
+        // The place rounds by three units in the last place of 1, times the texels; from one texel to the next it is 4 at most.
+        let tolerance = 4.0 * (3.6e-7 * f64::from(texture.width.max(texture.height)) + 3.6e-7);
+        for (found, expected) in floats(result[0]).into_iter().zip(expected) {
+            let size = [texture.width, texture.height];
+            assert!(
+                (found - expected).abs() <= tolerance,
+                "{size:?} clamp {}, {u} {v}: {found} {expected}",
+                texture.clamp
+            );
+        }
+    }
+}
+
+/// Whether rounding may put a direction into the next texel.
+fn on_an_edge(w: DVec3) -> bool {
+    let [x, y] = sky_position(w);
+    // Near the poles a little makes many columns, but f32 vectors keep their digits there.
+    [x, y].iter().any(|x| (x - x.round()).abs() < 2e-5)
+}
+
+/// Radiance and density, on the whole sphere, around its poles, at the seam.
+fn environment(probe: &Probe, reference: &Reference) {
+    let mut rng = StdRng::seed_from_u64(22);
+    let mut directions: Vec<Vec3> = (0..100_000)
+        .map(|i| {
+            let phi: f64 = rng.random_range(-4.0..4.0);
+            let cos: f64 = rng.random_range(-1.0..1.0);
+            let cos: f64 = if i % 10 == 0 { cos.signum() * (1.0 - 1e-6 * cos.abs()) } else { cos };
+            sky_direction(phi, cos).as_vec3()
+        })
+        .collect();
+    // At the poles themselves the azimuth is anything.
+    directions.extend([Vec3::X, -Vec3::X, Vec3::Z, -Vec3::Z]);
+    let seam = sky_direction(std::f64::consts::PI - 37f64.to_radians(), 0.3);
+    directions.extend([seam.as_vec3(), (seam + 1e-7 * DVec3::X).as_vec3(), (seam - 1e-7 * DVec3::X).as_vec3()]);
+    let calls: Vec<Call> = directions.iter().map(|w| call([w.x, w.y, w.z, 0.0], [0.0; 4])).collect();
+    let (mut dark, mut bright) = (0, 0);
+    for (w, result) in directions.iter().zip(probe.call(Function::EnvironmentAt, &calls).expect("the probe runs")) {
+        let w = w.as_dvec3();
+        let (found, expected) = (vector(result[0]), reference.environment_radiance(w));
+        // The sun is 60 times the rest: the place rounds by 1e-6 texels.
+        assert!((found - expected).abs().max_element() <= 120.0 * 4e-6, "{w}: {found} {expected}");
+        let ([.., found], expected) = (floats(result[0]), reference.environment_density(w));
+        assert!((found - expected).abs() <= 1.2e-7 * expected || on_an_edge(w), "{w}: {found} {expected}");
+        dark += u32::from(expected < 0.02);
+        bright += u32::from(expected > 0.5);
+    }
+    assert!(dark > 1000 && bright > 1000, "{dark} {bright}");
+}
+
+/// Directions fall into parts of texels by their density, at the significance of 1e-4; and the density that a direction comes with is
+/// the one that is found when it is looked up.
+fn sampled_directions(probe: &Probe, reference: &Reference) {
+    const N: u32 = 200_000;
+    let expected: Vec<f64> =
+        shares_of_sky(|w| reference.environment_density(w)).into_iter().map(|share| share * f64::from(N)).collect();
+    let random: Vec<[u32; 4]> = (0..N).map(|i| random4(i, 0, 1, 23)).collect();
+    let unit = |number: u32| (uniform(number) as f32).to_bits();
+    let calls: Vec<Call> = random.iter().map(|r| [[r[3], unit(r[0]), unit(r[1]), 0], [0; 4]]).collect();
+    let sampled = probe.call(Function::SampleEnvironment, &calls).expect("the probe runs");
+    let back: Vec<Call> = sampled.iter().map(|result| [result[0], [0; 4]]).collect();
+    let looked_up = probe.call(Function::EnvironmentAt, &back).expect("the probe runs");
+    let mut counts = vec![0; expected.len()];
+    let mut edges = 0;
+    for ((random, sampled), looked_up) in random.iter().zip(sampled).zip(looked_up) {
+        let w = vector(sampled[0]);
+        counts[part_of_sky(w)] += 1;
+        let twin = reference.sample_environment(*random).expect("not black");
+        // Where the sine is the root of a small difference, it is known to half its digits.
+        let tolerance = 1e-6 + 2e-7 / twin.x.hypot(twin.z).max(5e-4);
+        assert!((w - twin).length() <= tolerance, "{random:?}: {w} {twin}");
+        if on_an_edge(w) {
+            edges += 1;
+        } else {
+            assert_eq!(sampled[0][3], looked_up[0][3], "{w}: the same bits");
+        }
+    }
+    assert!(edges < N / 1000, "{edges} on edges");
+    let p = chi_square_against(&counts, &expected);
+    println!("environment: p = {p:.3}");
+    assert!(p >= SIGNIFICANCE, "p = {p:e}");
+}
