@@ -53,6 +53,7 @@ impl Estimate {
 
 /// Fails if the smallest of several independent `p`s is too small for their number (Sidak), and says which.
 pub fn assert_plausible(tests: &[(String, f64)]) {
+    assert!(tests.iter().all(|(_, p)| !p.is_nan()), "{tests:?}");
     let (name, smallest) = tests.iter().min_by(|a, b| a.1.total_cmp(&b.1)).expect("some tests");
     let p = sidak(*smallest, tests.len());
     println!("{} tests, the least plausible is {name}: p = {smallest:.1e}, among so many {p:.1e}", tests.len());

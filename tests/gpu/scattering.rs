@@ -309,7 +309,7 @@ fn reciprocity(probe: &Probe, materials: &[Material], first: u32) {
         let (wo, wi) = (direction(3), direction(1));
         // Half of the pairs mirror each other, nearly.
         let near = (Vec3::new(-wo.x, -wo.y, wo.z) + 0.01 * wi).normalize();
-        let wi = if i / materials.len() % 2 == 0 { wi } else { near };
+        let wi = if (i / materials.len()).is_multiple_of(2) { wi } else { near };
         let mut pair = call([wo.x, wo.y, wo.z, 0.0], [wi.x, wi.y, wi.z, 0.0]);
         pair[0][3] = material;
         there.push(pair);
