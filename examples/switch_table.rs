@@ -14,8 +14,8 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
-const SIZE: u32 = 128;
-const ROUNDS: usize = 9;
+const SIZE: u32 = 192;
+const ROUNDS: usize = 15;
 
 /// Sets the feature of this number.
 fn switch_on(features: &mut Features, number: usize) {
