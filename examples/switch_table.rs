@@ -17,26 +17,6 @@ use std::time::Instant;
 const SIZE: u32 = 192;
 const ROUNDS: usize = 15;
 
-/// Sets the feature of this number.
-fn switch_on(features: &mut Features, number: usize) {
-    let all: [&mut bool; 13] = [
-        &mut features.glossy,
-        &mut features.vertex_normals,
-        &mut features.instances,
-        &mut features.point_luminaires,
-        &mut features.infinite_luminaires,
-        &mut features.area_luminaires,
-        &mut features.environment,
-        &mut features.impulses,
-        &mut features.dielectrics,
-        &mut features.textures,
-        &mut features.holes,
-        &mut features.filter,
-        &mut features.lens,
-    ];
-    *all.into_iter().nth(number).expect("a feature") = true;
-}
-
 fn open(device: &Arc<Device>, scene: &Scene, ray_query: bool, adjust: impl FnOnce(&mut Features)) -> GpuTracer {
     GpuTracer::with_model(device, scene, ray_query, |model| adjust(&mut model.features))
         .unwrap_or_else(|e| panic!("{e}"))
@@ -73,7 +53,7 @@ fn main() {
             for (number, feature) in Features::NAMES.iter().enumerate() {
                 // Refraction is a part of impulses.
                 if !used[number] && *feature != "dielectrics" {
-                    tracers.push((feature.to_string(), open(&device, &scene, ray_query, |f| switch_on(f, number))));
+                    tracers.push((feature.to_string(), open(&device, &scene, ray_query, |f| f.switch_on(number))));
                 }
             }
             tracers.push(("everything".into(), open(&device, &scene, ray_query, |f| *f = Features::ALL)));

@@ -11,7 +11,8 @@ vec4 environment_texel(int x, int y) {
     int width = int(frame.environment_width);
     x = x < 0 ? x + width : (x >= width ? x - width : x);
     y = clamp(y, 0, int(frame.environment_height) - 1);
-    return uintBitsToFloat(texelFetch(environment_texels, y * width + x));
+    // A direction that is not a number may give any column.
+    return uintBitsToFloat(texelFetch(environment_texels, y * width + clamp(x, 0, width - 1)));
 }
 
 // Radiance from a direction, bilinear between the centres of texels.
@@ -43,8 +44,14 @@ vec3 sample_environment(uint random, vec2 u, out float density) {
     uint row = texel / width;
     density = uintBitsToFloat(texelFetch(environment_texels, int(texel)).w);
     vec2 azimuth = sin_cos_turns((float(texel - row * width) + u.x) / float(width) - 0.5 - frame.environment_rotation);
-    float step = 0.5 / float(frame.environment_height);
-    float cosine = mix(sin_cos_turns(float(row) * step).y, sin_cos_turns(float(row + 1u) * step).y, u.y);
-    float sine = sqrt(max(0.0, (1.0 - cosine) * (1.0 + cosine)));
+    // By 1 - cosine of the angle from the nearer pole, 2 sin^2 of its half, which does not cancel.
+    uint height = frame.environment_height;
+    bool south = 2u * row >= height;
+    float step = 0.25 / float(height);
+    float upper = sin_cos_turns(float(south ? height - row : row) * step).x;
+    float lower = sin_cos_turns(float(south ? height - row - 1u : row + 1u) * step).x;
+    float height_below_pole = 2.0 * mix(upper * upper, lower * lower, u.y);
+    float cosine = south ? height_below_pole - 1.0 : 1.0 - height_below_pole;
+    float sine = sqrt(height_below_pole * (2.0 - height_below_pole));
     return vec3(sine * azimuth.x, cosine, -sine * azimuth.y);
 }

@@ -21,7 +21,14 @@ const uint RAY_FLAGS = HOLES ? gl_RayFlagsNoneEXT : gl_RayFlagsOpaqueEXT;
         } \
     }
 
+// A query with numbers that are not numbers is undefined.
+bool is_ray(vec3 origin, vec3 direction) {
+    float size = dot(abs(direction), vec3(1.0));
+    return size > 0.0 && size < 1e38 && dot(abs(origin), vec3(1.0)) < 1e38;
+}
+
 bool closest_hit(vec3 origin, vec3 direction, float t_max, uint salt, out Hit hit) {
+    if (!is_ray(origin, direction)) return false;
     rayQueryEXT query;
     rayQueryInitializeEXT(query, top_level, RAY_FLAGS, 0xffu, origin, 0.0, direction, t_max);
     PROCEED(query, salt)
@@ -34,6 +41,7 @@ bool closest_hit(vec3 origin, vec3 direction, float t_max, uint salt, out Hit hi
 }
 
 bool occluded(vec3 origin, vec3 direction, float t_max, uint salt) {
+    if (!is_ray(origin, direction)) return false;
     rayQueryEXT query;
     rayQueryInitializeEXT(query, top_level, RAY_FLAGS | gl_RayFlagsTerminateOnFirstHitEXT, 0xffu, origin, 0.0, direction, t_max);
     PROCEED(query, salt)

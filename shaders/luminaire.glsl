@@ -43,7 +43,9 @@ float triangle_density(vec3 p, vec3 wi, Hit hit, float area_density) {
         c = row_dot(to_world, c) + translation(to_world);
     }
     vec3 normal = cross(b - a, c - a);
-    float double_area = length(normal);
+    // Scaled first, so that the squares of a tiny or huge triangle's normal neither vanish nor overflow.
+    float scale = largest(abs(normal));
+    float double_area = scale * length(normal / scale);
     float area = 0.5 * double_area;
     vec3 v[3];
     float omega;
@@ -52,9 +54,9 @@ float triangle_density(vec3 p, vec3 wi, Hit hit, float area_density) {
     return area_density * hit.t * hit.t * double_area / abs(dot(normal, wi));
 }
 
-// The weight of emission that a ray with the density `pdf` found, where `density` is that of direct light. Impulses have an infinite pdf.
+// The weight of emission that a ray with the density `pdf` found, where `density` is that of direct light.
 float emission_weight(float pdf, float density) {
-    if (LIGHT_SAMPLING == LIGHT_NONE || pdf == INFINITY) return 1.0;
+    if (LIGHT_SAMPLING == LIGHT_NONE || pdf == IMPULSE) return 1.0;
     if (LIGHT_SAMPLING == LIGHT_DIRECT) return 0.0;
     return power_heuristic(pdf, density);
 }
@@ -93,7 +95,7 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, uvec4 random, float rest
             incident *= omega;
             density = light.radiance.w / omega;
             // The plane may be missed where the triangle is seen edge-on.
-            if (!(t > 0.0)) return vec3(0.0);
+            if (!(t > 0.0 && t < 1e30)) return vec3(0.0);
         } else {
             if (area) {
                 vec3 w = uniform_triangle(uniform2(random.xy));
@@ -126,7 +128,8 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, uvec4 random, float rest
             vec3 ac = light.c.xyz - light.a.xyz;
             vec3 ap = target - light.a.xyz;
             vec3 n = cross(ab, ac);
-            vec2 barycentric = vec2(dot(cross(ap, ac), n), dot(cross(ab, ap), n)) / dot(n, n);
+            vec3 unit = normalize(n / largest(abs(n)));
+            vec2 barycentric = vec2(dot(cross(ap, ac), unit), dot(cross(ab, ap), unit)) / dot(n, unit);
             if (TEXTURES && emission_map != NONE) radiance *= texture_at(emission_map, uv_at(light.triangle, barycentric)).rgb;
             if (partly) radiance *= opacity_at(light.material, light.triangle, barycentric);
             if (radiance == vec3(0.0)) return vec3(0.0);

@@ -6,7 +6,7 @@ struct Path {
     vec3 throughput;    // what a unit of radiance along that ray adds to the pixel
     vec3 radiance;      // what was found so far
     uint bounce;        // surfaces met so far
-    float pdf;          // density per steradian with which the direction was chosen; infinite for the camera's and for impulses
+    float pdf;          // density per steradian with which the direction was chosen; or IMPULSE, also for the camera's
     float eta_scale;    // product of the squared relative indices that were passed, by which refraction diluted the throughput
     vec3 albedo;        // product of the albedos (combinedAlbedo)
 };
@@ -14,7 +14,7 @@ struct Path {
 Path camera_path(uvec2 pixel, uint pixel_index, uint sample_index) {
     vec3 origin, direction;
     sensor_ray(pixel, pixel_index, sample_index, origin, direction);
-    return Path(origin, direction, vec3(1.0), vec3(0.0), 0u, INFINITY, 1.0, vec3(1.0));
+    return Path(origin, direction, vec3(1.0), vec3(0.0), 0u, IMPULSE, 1.0, vec3(1.0));
 }
 
 // Traces the path's ray and whatever happens at the surface it meets: once through the loop of `radiance` in the reference.
@@ -27,7 +27,7 @@ bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uin
         // Without an environment escaping light disappears.
         if (ENVIRONMENT) {
             float density = 0.0;
-            if (LIGHT_SAMPLING == LIGHT_MIS && path.pdf != INFINITY) {
+            if (LIGHT_SAMPLING == LIGHT_MIS && path.pdf != IMPULSE) {
                 density = frame.environment.w * environment_density(path.direction);
             }
             float weight = emission_weight(path.pdf, density);
@@ -41,7 +41,7 @@ bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uin
 
     if (AREA_LUMINAIRES && material.emission.rgb != vec3(0.0)) {
         float density = 0.0;
-        if (LIGHT_SAMPLING == LIGHT_MIS && path.pdf != INFINITY) {
+        if (LIGHT_SAMPLING == LIGHT_MIS && path.pdf != IMPULSE) {
             density = triangle_density(path.origin, path.direction, hit, material.emission.w);
         }
         path.radiance += path.throughput * material.emission.rgb * emission_weight(path.pdf, density);
@@ -71,7 +71,7 @@ bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uin
         if (EXTINCTION == EXTINCTION_SURFACE) path.throughput /= alive;
     }
     Scattering next = scatter(s, material, i, wo, random);
-    if (last && LIGHT_SAMPLING == LIGHT_DIRECT && next.pdf != INFINITY) return false;
+    if (last && LIGHT_SAMPLING == LIGHT_DIRECT && next.pdf != IMPULSE) return false;
     path.throughput *= next.weight / next.eta2;
     if (path.throughput == vec3(0.0)) return false;
     if (THRESHOLD) {

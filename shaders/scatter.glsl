@@ -35,8 +35,6 @@ vec4 bsdf_and_pdf(Surfel s, Material material, vec3 wo, vec3 wi) {
     return vec4(f, pdf);
 }
 
-vec3 bsdf(Surfel s, Material material, vec3 wo, vec3 wi) { return bsdf_and_pdf(s, material, wo, wi).rgb; }
-
 // A direction for indirect light; `choice` in [0, 1) picks the lobe.
 vec3 scatter_direction(Surfel s, Material material, vec3 wo, vec2 u, float choice) {
     if (DIRECTIONS == DIRECTIONS_UNIFORM) return from_frame(s.shading_normal, uniform_hemisphere(u));
@@ -55,10 +53,13 @@ float survival(Material material) {
     return min(largest(albedo), MAX_SURVIVAL);
 }
 
+// Marks a direction that no density describes. Not an infinity, of which a compiler may assume that there is none.
+const float IMPULSE = -1.0;
+
 struct Scattering {
     vec3 wi;
     vec3 weight;      // f |cos| / pdf, without the factor by which refraction concentrates radiance
-    float pdf;        // per steradian; infinite for an impulse
+    float pdf;        // per steradian, or IMPULSE
     float eta2;       // the square of the relative index that was passed, else 1
 };
 
@@ -69,10 +70,10 @@ Scattering scatter(Surfel s, Material material, Impulses i, vec3 wo, uvec4 rando
         float all = average(i.reflected + i.transmitted);
         if (!DIELECTRICS || choice < i.probability * (average(i.reflected) / all)) {
             vec3 weight = i.reflected * (all / (i.probability * average(i.reflected)));
-            return Scattering(reflect_direction(wo, i.normal), weight, INFINITY, 1.0);
+            return Scattering(reflect_direction(wo, i.normal), weight, IMPULSE, 1.0);
         }
         vec3 weight = i.transmitted * (all / (i.probability * average(i.transmitted)));
-        return Scattering(refract_direction(wo, i.normal, i.eta), weight, INFINITY, i.eta * i.eta);
+        return Scattering(refract_direction(wo, i.normal, i.eta), weight, IMPULSE, i.eta * i.eta);
     }
     float rest = IMPULSES ? 1.0 - i.probability : 1.0;
     if (IMPULSES) choice = (choice - i.probability) / rest;

@@ -12,18 +12,16 @@ layout(constant_id = 7) const bool IMPULSES = true;            // some material 
 layout(constant_id = 8) const bool DIELECTRICS = true;         // some material has an index of refraction
 layout(constant_id = 9) const bool TEXTURES = true;            // some material has a map
 layout(constant_id = 10) const bool HOLES = true;              // some material is not opaque everywhere
-layout(constant_id = 11) const bool FILTER = true;             // not the box of one pixel
-layout(constant_id = 12) const bool LENS = true;
-layout(constant_id = 13) const bool ORTHOGRAPHIC = false;
-layout(constant_id = 14) const bool SOBOL = false;
+layout(constant_id = 11) const bool ORTHOGRAPHIC = false;
+layout(constant_id = 12) const bool SOBOL = false;
 
 // The integrator's choices (src/scene/estimator.rs).
-layout(constant_id = 15) const bool SIMPLE = false;            // the simple ray tracer instead of the path tracer
-layout(constant_id = 16) const uint LIGHT_SAMPLING = 2u;
-layout(constant_id = 17) const bool SOLID_ANGLE = true;        // near triangles are sampled by solid angle
-layout(constant_id = 18) const uint DIRECTIONS = 2u;
-layout(constant_id = 19) const uint EXTINCTION = 3u;
-layout(constant_id = 20) const bool THRESHOLD = false;         // paths of small albedo end
+layout(constant_id = 13) const bool SIMPLE = false;            // the simple ray tracer instead of the path tracer
+layout(constant_id = 14) const uint LIGHT_SAMPLING = 2u;
+layout(constant_id = 15) const bool SOLID_ANGLE = true;        // near triangles are sampled by solid angle
+layout(constant_id = 16) const uint DIRECTIONS = 2u;
+layout(constant_id = 17) const uint EXTINCTION = 3u;
+layout(constant_id = 18) const bool THRESHOLD = false;         // paths of small albedo end
 
 const uint LIGHT_NONE = 0u;
 const uint LIGHT_DIRECT = 1u;
@@ -41,7 +39,7 @@ layout(set = 0, binding = 0, std140) uniform Frame {
     vec4 forward;      // unit line of sight
     vec4 right;        // to the right edge of the picture: at distance 1, or of the parallel rays
     vec4 up;           // to the upper edge
-    vec4 lens;         // radius of the aperture, focus distance, blades, rotation in radians
+    vec4 lens;         // radius of the aperture, focus distance, blades, rotation in turns
     vec4 ambient;      // ambient radiance of the simple ray tracer
     vec4 environment;  // radiance of the environment, or a factor to its image; w: probability of choosing it
     uint width;        // film size in pixels

@@ -5,14 +5,13 @@ float filter_knot(uint i) { return frame.filter_table[i >> 2u][i & 3u]; }
 
 // From a pixel's left (upper) edge to a film point, in pixels.
 float filter_offset(uint random) {
-    if (!FILTER) return uniform1(random);
     uint interval = random >> 24u;
     float low = filter_knot(interval);
     return 0.5 + (low + (filter_knot(interval + 1u) - low) * uniform1(random << 8u));
 }
 
 // A corner of the aperture's polygon.
-vec2 lens_corner(uint k) { return sin_cos_turns(float(k) / frame.lens.z + frame.lens.w * (0.5 / PI)).yx; }
+vec2 lens_corner(uint k) { return sin_cos_turns(float(k) / frame.lens.z + frame.lens.w).yx; }
 
 // A point on the aperture, evenly: to the right and up, in the scene's unit.
 vec2 lens_point(uvec2 random) {
@@ -39,7 +38,7 @@ void sensor_ray(uvec2 pixel, uint pixel_index, uint sample_index, out vec3 origi
     direction = frame.forward.xyz;
     if (ORTHOGRAPHIC) origin += offset;
     else direction += offset;
-    if (LENS) {
+    if (frame.lens.x > 0.0) {
         // All rays of a film point meet in one point of the plane of focus.
         vec2 point = lens_point(random.zw);
         offset = point.x * normalize(frame.right.xyz) + point.y * normalize(frame.up.xyz);

@@ -121,9 +121,11 @@ vec3 spherical_triangle(vec3 v[3], float omega, vec2 u) {
     vec2 sc = sin_cos_turns(omega * u.x * (0.25 / PI));
     vec3 offset = v[0] * (g0 * sc.y - g1 * sc.x) + v[2] * (g2 * sc.x);
     vec3 corner = offset * (2.0 * dot(v[0], offset) / dot(offset, offset)) - v[0];
-    // Then a point between the second corner and the new one.
-    float d = dot(v[1], corner);
-    float z = 1.0 - u.y * (1.0 - d);
-    vec3 tangent = corner - d * v[1];
-    return normalize(z * v[1] + sqrt(max(0.0, 1.0 - z * z) / max(1e-20, dot(tangent, tangent))) * tangent);
+    // Then a point between the second corner and the new one, by 1 - cosine, which does not cancel where they are close.
+    vec3 chord = corner - v[1];
+    float whole = 0.5 * dot(chord, chord);
+    float part = u.y * whole;
+    vec3 tangent = chord + whole * v[1];
+    float sine = sqrt(max(0.0, part * (2.0 - part)));
+    return normalize((1.0 - part) * v[1] + sine * inversesqrt(max(1e-20, dot(tangent, tangent))) * tangent);
 }

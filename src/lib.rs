@@ -28,13 +28,13 @@
 //!
 //! # From the lecture to the code
 //!
-//! Every system of the lecture "Raytracing" (R. Kuffner dos Anjos), slide by slide. Shaders are under `shaders/`; each function has a twin of
-//! the same name in [`mod@reference`] (the loop of its `radiance` is split into `camera_path` and `extend_path`). Tests are under `tests/`,
+//! Every system of the lecture "Raytracing" (R. Kuffner dos Anjos), slide by slide. Shaders are under `shaders/`; each function has a twin in
+//! [`mod@reference`], mostly of the same name (the loop of its `radiance` is split into `camera_path` and `extend_path`). Tests are under `tests/`,
 //! scenes under `scenes/`; every scene is rendered by every backend against the reference (`gpu::scenes`).
 //!
 //! | | slide | file: function | tests | scene |
 //! |---|---|---|---|---|
-//! | 1 | Surface Element Class: `Surfel`, Blinn-Phong (normalised) | `surfel.glsl`: `surfel`; `scatter.glsl`: `bsdf`; [`reference::surfel`] | `gpu::functions::bsdf_matches`, `reference::scattering` | `plates` |
+//! | 1 | Surface Element Class: `Surfel`, Blinn-Phong (normalised) | `surfel.glsl`: `surfel`; `scatter.glsl`: `bsdf_and_pdf`; [`reference::surfel`] | `gpu::functions::bsdf_matches`, `reference::scattering` | `plates` |
 //! | 2 | A Simple Raytracer: direct light and the ambient term | `path.glsl`: `SIMPLE`; [`scene::Integrator::Simple`] | `gpu::pictures` ("simple"), `gpu::features` ("parallel") | `simple` |
 //! | 3 | Path Trace Function: emission, direct, indirect light | `path.glsl`: `extend_path`; [`reference::path`] | `gpu::pictures`, `reference::transport` | `cornell` |
 //! | 4 | Lighting Functions: direct light of a point, ambient | `luminaire.glsl`: `direct_light`; [`reference::luminaire`] | `gpu::pictures::inverse_square_and_none_at_infinity` | `simple`, `shadows` |

@@ -144,3 +144,30 @@ fn array_strides_are_the_host_s_sizes() {
     }
     assert!(checked >= 8, "only {checked} arrays were found");
 }
+
+/// The specialization constants have the ids that the host gives them, by name.
+#[test]
+fn specialization_constants_have_the_host_s_order() {
+    use luminaire::gpu::model::{Features, KernelModel};
+    let expected: Vec<String> =
+        Features::CONSTANTS.iter().chain(&KernelModel::CONSTANTS).map(|name| name.to_uppercase()).collect();
+    for shader in SHADERS {
+        let module = rspirv::dr::load_bytes(shader.spirv).expect("valid SPIR-V");
+        let mut names = HashMap::new();
+        let mut ids = HashMap::new();
+        for i in module.debug_names.iter().chain(&module.annotations) {
+            match (i.class.opcode, i.operands.as_slice()) {
+                (Op::Name, [Operand::IdRef(id), Operand::LiteralString(name)]) => drop(names.insert(*id, name.clone())),
+                (
+                    Op::Decorate,
+                    [Operand::IdRef(id), Operand::Decoration(Decoration::SpecId), Operand::LiteralBit32(spec)],
+                ) => drop(ids.insert(*id, *spec)),
+                _ => {}
+            }
+        }
+        assert!(!ids.is_empty(), "{}", shader.name);
+        for (id, spec) in ids {
+            assert_eq!(Some(&names[&id]), expected.get(spec as usize), "constant {spec} in {}", shader.name);
+        }
+    }
+}

@@ -4,7 +4,7 @@ use crate::Result;
 use crate::bvh::MeshBvh;
 use crate::gpu::layout::Object;
 use crate::gpu::{Buffer, Device, TexelBuffer, barrier, submit};
-use crate::scene::Scene;
+use crate::scene::{self, Scene};
 use ash::vk;
 use gpu_allocator::MemoryLocation;
 use std::sync::Arc;
@@ -67,6 +67,7 @@ impl TopLevel {
             bottom.push(Structure::build(device, &format!("BLAS {}", mesh.name), kind, geometry, count as u32)?);
         }
 
+        let holes = objects_with_holes(scene);
         let loader = device.acceleration_structure();
         let instances: Vec<[u8; 64]> = objects
             .iter()
@@ -77,7 +78,7 @@ impl TopLevel {
                     .acceleration_structure(bottom[mesh as usize].raw);
                 // SAFETY: the structure is alive.
                 let address = unsafe { loader.get_acceleration_structure_device_address(&info) };
-                instance_record(&object.object_to_world, place as u32, has_holes(scene, object.scene_index), address)
+                instance_record(&object.object_to_world, place as u32, holes[object.scene_index as usize], address)
             })
             .collect();
         let usage = vk::BufferUsageFlags::SHADER_DEVICE_ADDRESS
@@ -95,16 +96,17 @@ impl TopLevel {
     }
 }
 
-/// Whether a ray may pass any triangle of an object.
-fn has_holes(scene: &Scene, object: u32) -> bool {
-    let object = &scene.objects[object as usize];
-    match object.material {
-        Some(material) => scene.materials[material as usize].has_holes(),
-        None => {
-            let holes: Vec<bool> = scene.materials.iter().map(|m| m.has_holes()).collect();
-            scene.meshes[object.mesh as usize].triangles.iter().any(|t| holes[t.material as usize])
-        }
-    }
+/// For each object, whether a ray may pass any of its triangles.
+fn objects_with_holes(scene: &Scene) -> Vec<bool> {
+    let materials: Vec<bool> = scene.materials.iter().map(|m| m.has_holes()).collect();
+    let any = materials.contains(&true);
+    let meshes: Vec<bool> =
+        scene.meshes.iter().map(|mesh| any && mesh.triangles.iter().any(|t| materials[t.material as usize])).collect();
+    let of_object = |object: &scene::Object| match object.material {
+        Some(material) => materials[material as usize],
+        None => meshes[object.mesh as usize],
+    };
+    scene.objects.iter().map(of_object).collect()
 }
 
 /// A `VkAccelerationStructureInstanceKHR` as its bytes: 3x4 matrix, index and mask, flags, address.

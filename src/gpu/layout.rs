@@ -43,7 +43,7 @@ shared! {
         right: [f32; 4],
         /// To the upper edge.
         up: [f32; 4],
-        /// Radius of the aperture, focus distance, blades, rotation in radians.
+        /// Radius of the aperture, focus distance, blades, rotation in turns.
         lens: [f32; 4],
         /// Ambient radiance of the simple ray tracer.
         ambient: [f32; 4],

@@ -1,8 +1,8 @@
 //! What the kernel models for a scene: no more than the scene needs.
 
 use crate::scene::{
-    AreaSampling, Directions, Estimator, Extinction, Integrator, LightSampling, Luminaire, LuminaireTable, Material,
-    Projection, SampledLuminaire, Sampler, Scene,
+    AreaSampling, Directions, Extinction, Integrator, LightSampling, Luminaire, LuminaireTable, Material, Projection,
+    SampledLuminaire, Sampler, Scene,
 };
 use glam::{Affine3A, Vec3};
 
@@ -18,6 +18,14 @@ macro_rules! features {
             pub const ALL: Features = Features { $($name: true,)* };
             /// What each is called.
             pub const NAMES: &[&str] = &[$($text,)*];
+
+            /// The constants' names, in lower case.
+            pub const CONSTANTS: &[&str] = &[$(stringify!($name),)*];
+
+            /// Switches the feature of this number in [`Features::NAMES`] on.
+            pub fn switch_on(&mut self, number: usize) {
+                *[$(&mut self.$name,)*][number] = true;
+            }
 
             /// In the order of [`Features::NAMES`] and of the constants' ids.
             pub fn values(&self) -> Vec<bool> {
@@ -50,10 +58,6 @@ features! {
     textures: "textures",
     /// Some material is not opaque everywhere.
     holes: "holes",
-    /// The pixel filter is not the box of one pixel.
-    filter: "pixel filter",
-    /// The sensor has a lens.
-    lens: "lens",
 }
 
 /// The kernel that runs: the scene's features, and the choices of its integrator.
@@ -94,8 +98,6 @@ impl KernelModel {
                 [m.maps.ambient, m.maps.lambert, m.maps.glossy, m.maps.emission].iter().any(Option::is_some)
             }),
             holes: material(Material::has_holes),
-            filter: !scene.film.is_pixel_square(),
-            lens: scene.sensor.lens.is_some(),
         };
         KernelModel {
             features,
@@ -105,16 +107,14 @@ impl KernelModel {
         }
     }
 
+    /// Names of the specialization constants after those of [`Features::CONSTANTS`], in lower case.
+    pub const CONSTANTS: [&str; 8] =
+        ["orthographic", "sobol", "simple", "light_sampling", "solid_angle", "directions", "extinction", "threshold"];
+
     /// Values of the specialization constants, by their ids.
     pub(crate) fn constants(&self) -> Vec<u32> {
-        let (simple, estimator) = match self.integrator {
-            // It samples light as the first slides do, and never goes on.
-            Integrator::Simple { .. } => {
-                let (light_sampling, area_sampling) = (LightSampling::Direct, AreaSampling::Area);
-                (true, Estimator { light_sampling, area_sampling, ..Estimator::default() })
-            }
-            Integrator::Path(estimator) => (false, estimator),
-        };
+        let simple = matches!(self.integrator, Integrator::Simple { .. });
+        let estimator = self.integrator.estimator();
         let mut constants: Vec<u32> = self.features.values().into_iter().map(u32::from).collect();
         constants.extend([
             u32::from(self.orthographic),

@@ -35,7 +35,7 @@ pub enum Function {
     UniformHemisphere = 8,
     /// (u, v, m) to a half vector about +z.
     GlossyHalfVector = 9,
-    /// (wo, material), random numbers to (wi, pdf), (weight, eta^2) on a surface seen from outside whose normal is +z.
+    /// (wo, material), random numbers to (wi, pdf, or -1 for an impulse), (weight, eta^2) on a surface seen from outside whose normal is +z.
     Scatter = 10,
     /// (point, index into the luminaire table), (u, v) to (direction, solid angle); 0 where the triangle is sampled by area.
     SphericalTriangle = 11,

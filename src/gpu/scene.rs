@@ -121,7 +121,7 @@ fn frame(scene: &Scene, table: &LuminaireTable) -> layout::Frame {
         right: vec4((right * half * aspect).as_vec3(), 0.0),
         up: vec4((true_up * half).as_vec3(), 0.0),
         lens: lens.map_or([0.0, 1.0, 0.0, 0.0], |l| {
-            [l.radius, l.focus_distance, l.blades as f32, f64::from(l.rotation).to_radians() as f32]
+            [l.radius, l.focus_distance, l.blades as f32, (f64::from(l.rotation) / 360.0).rem_euclid(1.0) as f32]
         }),
         ambient: vec4(ambient, 0.0),
         environment: vec4(radiance, table.environment_probability()),

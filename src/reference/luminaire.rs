@@ -41,7 +41,7 @@ impl Reference {
         }
         let Some(light) = self.sample_luminaire(surfel, random) else { return DVec3::ZERO };
         let cosine = surfel.shading_normal.dot(light.wi).max(0.0);
-        let estimator = self.estimator();
+        let estimator = self.scene.integrator.estimator();
         let weight = match (light.pdf, estimator.light_sampling) {
             (Some(pdf), LightSampling::Mis) => {
                 power_heuristic(pdf, bsdf_pdf(surfel, wo, light.wi, estimator.directions))
@@ -138,7 +138,7 @@ impl Reference {
         let [a, b, c] = corners;
         let area = 0.5 * (b - a).cross(c - a).length();
         let distance2 = ((a + b + c) / 3.0).distance_squared(from);
-        if self.estimator().area_sampling == AreaSampling::Area || area / distance2 <= NEAR {
+        if self.scene.integrator.estimator().area_sampling == AreaSampling::Area || area / distance2 <= NEAR {
             return None;
         }
         Some(solid_angle(seen_from(from, corners))).filter(|omega| *omega > LEAST_SOLID_ANGLE)

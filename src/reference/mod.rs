@@ -1,7 +1,7 @@
 //! The double-precision tracer: the lecture, function by function, as plain as possible. It says what is right.
 //!
 //! Everything is `f64`, starting from the scene's `f32` numbers, and every random number is the one that the kernel draws
-//! ([`crate::sampling`]). The shader function that does the same has the same name:
+//! ([`crate::sampling`]). The shader function that does the same mostly has the same name:
 //!
 //! | lecture | here |
 //! |---|---|

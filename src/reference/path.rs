@@ -4,28 +4,16 @@ use super::Reference;
 use super::luminaire::emission_weight;
 use super::scatter::{MAX_SURVIVAL, scatter, survival};
 use crate::sampling::{light_block, ray_salt, scatter_block, uniform};
-use crate::scene::{AreaSampling, Estimator, Extinction, Integrator, LightSampling};
+use crate::scene::{Extinction, Integrator, LightSampling};
 use glam::DVec3;
 
 impl Reference {
-    /// The estimator. The simple ray tracer samples direct light, and area luminaires by their area.
-    pub(super) fn estimator(&self) -> Estimator {
-        match self.scene.integrator {
-            Integrator::Path(estimator) => estimator,
-            Integrator::Simple { .. } => Estimator {
-                light_sampling: LightSampling::Direct,
-                area_sampling: AreaSampling::Area,
-                ..Estimator::default()
-            },
-        }
-    }
-
     /// Radiance of one sample of a pixel (`y * width + x`), and the number of rays that were traced for it.
     pub fn radiance(&self, pixel: u32, sample: u32) -> (DVec3, u32) {
         let settings = &self.scene.settings;
         let numbers = |block: u32| settings.sampler.numbers(pixel, sample, block, settings.seed);
         let salt = |ray: u32| ray_salt(pixel, sample, ray, settings.seed);
-        let estimator = self.estimator();
+        let estimator = self.scene.integrator.estimator();
 
         let (mut origin, mut direction) = self.sensor_ray(pixel, sample);
         let mut radiance = DVec3::ZERO;

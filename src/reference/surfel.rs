@@ -98,7 +98,7 @@ impl Reference {
             glossy: material.glossy.as_dvec3() * map(material.maps.glossy),
             exponent: material.exponent.into(),
             reflection: material.reflection.as_dvec3(),
-            transmission: material.transmission.as_dvec3(),
+            transmission: if material.eta.is_some() { material.transmission.as_dvec3() } else { DVec3::ZERO },
             eta: material.eta.map(f64::from),
             impulse_probability: material.impulse_probability.map(f64::from),
         }

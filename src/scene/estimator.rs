@@ -15,6 +15,22 @@ pub enum Integrator {
     },
 }
 
+impl Integrator {
+    /// How light is found and directions are chosen. The simple ray tracer samples direct light, and area luminaires by their area; it
+    /// does not bounce.
+    pub fn estimator(&self) -> Estimator {
+        match self {
+            Integrator::Path(estimator) => *estimator,
+            Integrator::Simple { .. } => Estimator {
+                light_sampling: LightSampling::Direct,
+                area_sampling: AreaSampling::Area,
+                max_bounces: Some(0),
+                ..Estimator::default()
+            },
+        }
+    }
+}
+
 /// The choices that the lecture discusses; any mix that ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimator {

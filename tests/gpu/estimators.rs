@@ -92,6 +92,36 @@ fn biased_estimators_are_off_by_what_they_should() {
     assert_eq!(validation_messages(), 0);
 }
 
+/// Seen from inside a dielectric, through its flat surface at a right angle, white light from everywhere is brighter by `eta^2`: what is
+/// transmitted has `(1 - F) eta^2`, and `F` of the white inside is reflected. Bodies that light leaves again cannot tell.
+#[test]
+fn radiance_is_higher_inside_a_dielectric() {
+    if on_the_old_driver() {
+        return;
+    }
+    for (eta, extinction) in [
+        (1.5, Extinction::Throughput),
+        (1.5, Extinction::Surface),
+        (2.4, Extinction::Throughput),
+        (0.8, Extinction::Throughput),
+    ] {
+        let mut scene = empty(32, 32);
+        scene.environment = Some(Environment { radiance: Vec3::ONE, image: None, rotation: 0.0 });
+        estimator(&mut scene).extinction = extinction;
+        // The outward side is up, and the sensor is below.
+        let surface = quad(Vec3::new(-9.0, 1.0, 9.0), Vec3::X * 18.0, Vec3::Z * -18.0);
+        let glass = Material { reflection: Vec3::ONE, transmission: Vec3::ONE, eta: Some(eta), ..Material::default() };
+        add(&mut scene, surface, glass, Affine3A::IDENTITY);
+        scene.sensor = pinhole(Vec3::ZERO, Vec3::Y, Vec3::Z, 0.1);
+        let eta = f64::from(eta);
+        let reflected = ((eta - 1.0) / (eta + 1.0)).powi(2);
+        let expected = (1.0 - reflected) * eta * eta + reflected;
+        on_every_backend(|backend| measure(backend, &scene).assert_is(expected, 3e-3));
+        let mut reference = luminaire::reference::Reference::new(&scene);
+        total(&render(&mut reference, 32, 32, 512, 16)).assert_is(expected, 3e-3);
+    }
+}
+
 /// White light from everywhere shows nothing of bodies that absorb nothing: glass of any index, the 60/40 mirror, a full mirror.
 #[test]
 fn what_absorbs_nothing_is_invisible_in_uniform_light() {
