@@ -46,7 +46,7 @@ pub struct EstimatorOptions {
     #[arg(long, value_name = "ALBEDO", allow_negative_numbers = true, value_parser = threshold)]
     pub albedo_threshold: Option<f32>,
     /// At most so many indirect bounces; 0 is direct light alone.
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(..=1_000_000))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(..=i64::from(Estimator::MOST_BOUNCES)))]
     pub max_bounces: Option<u32>,
     /// Where the random numbers come from: independent, or sobol (less noise) [default: the scene's].
     #[arg(long, value_name = "NAME", value_parser = named::<Sampler>)]

@@ -28,7 +28,7 @@ pub struct Estimator {
     pub extinction: Extinction,
     /// A path whose combined albedo falls below this ends (slide "Albedo Termination"): a bias.
     pub albedo_threshold: Option<f32>,
-    /// At most this many indirect bounces; none: no limit. 0 is direct light only. Emission at bounce `max_bounces + 1` still
+    /// At most this many indirect bounces, up to [`Estimator::MOST_BOUNCES`]; none: no limit. 0 is direct light only. Emission at bounce `max_bounces + 1` still
     /// counts where it is direct light.
     pub max_bounces: Option<u32>,
 }
@@ -115,6 +115,9 @@ pub const PRESETS: [(&str, Estimator); 5] = [
 ];
 
 impl Estimator {
+    /// The largest limit of bounces; whatever is beyond counts as no limit.
+    pub const MOST_BOUNCES: u32 = 1_000_000;
+
     /// The preset of a name; none if there is no such.
     pub fn preset(name: &str) -> Option<Estimator> {
         if name == "default" {
@@ -123,9 +126,10 @@ impl Estimator {
         PRESETS.iter().find(|(preset, _)| *preset == name).map(|(_, estimator)| *estimator)
     }
 
-    /// Whether every path ends: chance ends it, or a limit.
+    /// Whether every path ends: chance ends it, or a limit of at most [`Estimator::MOST_BOUNCES`]. The tracers do not check it, and
+    /// may never come back where it is false; [`backend::open`](crate::backend::open) does.
     pub fn ends(&self) -> bool {
-        self.extinction != Extinction::Off || self.max_bounces.is_some()
+        self.extinction != Extinction::Off || self.max_bounces.is_some_and(|bounces| bounces <= Self::MOST_BOUNCES)
     }
 }
 

@@ -177,7 +177,7 @@ impl File<'_> {
             directions: table.directions.as_ref().map(|part| *part.get_ref()),
             extinction: table.extinction.as_ref().map(|part| *part.get_ref()),
             albedo_threshold: table.albedo_threshold.as_ref().map(|part| part.get_ref().0),
-            max_bounces: table.max_bounces.as_ref().map(|part| *part.get_ref()),
+            max_bounces: table.max_bounces.as_ref().map(|part| part.get_ref().0),
         }
         .apply(estimator);
         if !estimator.ends() {

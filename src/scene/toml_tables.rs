@@ -1,8 +1,8 @@
 //! The tables of a scene file, as `scenes/README.md` describes them.
 
 use super::toml_values::{
-    Angle, Blades, Colour, Exponent, Exposure, FilterRadius, Finite, Fov, Pixels, Positive, Probability, Samples,
-    Triple, Unit,
+    Angle, Blades, Bounces, Colour, Exponent, Exposure, FilterRadius, Finite, Fov, Pixels, Positive, Probability,
+    Samples, Triple, Unit,
 };
 use super::{AreaSampling, Directions, Extinction, Filter, LightSampling, Sampler};
 use ::toml::Spanned;
@@ -79,7 +79,7 @@ pub(super) struct IntegratorTable {
     pub directions: Option<Spanned<Directions>>,
     pub extinction: Option<Spanned<Extinction>>,
     pub albedo_threshold: Option<Spanned<Unit>>,
-    pub max_bounces: Option<Spanned<u32>>,
+    pub max_bounces: Option<Spanned<Bounces>>,
 }
 
 #[derive(Deserialize, Clone, Copy, PartialEq, Eq)]

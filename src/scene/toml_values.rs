@@ -1,5 +1,6 @@
 //! Numbers of a scene file that are checked as they are read, so that an error points at the very value.
 
+use super::Estimator;
 use glam::{DVec3, Vec3};
 use serde::Deserialize;
 
@@ -79,6 +80,11 @@ pub(super) struct Blades(pub u32);
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(try_from = "i64")]
 pub(super) struct Pixels(pub u32);
+
+/// Limit of indirect bounces.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(try_from = "i64")]
+pub(super) struct Bounces(pub u32);
 
 /// Samples a pixel.
 #[derive(Debug, Clone, Copy, Deserialize)]
@@ -191,6 +197,14 @@ impl TryFrom<i64> for Pixels {
     type Error = &'static str;
     fn try_from(pixels: i64) -> Checked<Self> {
         (1..=LARGEST_FILM).contains(&pixels).then_some(Pixels(pixels as u32)).ok_or("expected 1 to 65536 pixels")
+    }
+}
+
+impl TryFrom<i64> for Bounces {
+    type Error = &'static str;
+    fn try_from(bounces: i64) -> Checked<Self> {
+        let bounces = u32::try_from(bounces).ok().filter(|n| *n <= Estimator::MOST_BOUNCES);
+        bounces.map(Bounces).ok_or("expected 0 to 1000000 bounces; for no limit leave it out")
     }
 }
 

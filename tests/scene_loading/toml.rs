@@ -199,7 +199,8 @@ fn numbers_out_of_range_are_found_with_line_and_column() {
     toml_fails("[[material]]\nname = \"m\"\nimpulse_probability = 1\n", (3, 23), &["above 0 and below 1"]);
     toml_fails("[[object]]\nmesh = \"mesh.obj\"\nsmooth = 181\n", (3, 10), &["0 to 180"]);
     toml_fails("[[object]]\nmesh = \"mesh.obj\"\nscale = \"big\"\n", (3, 9), &["a number or three numbers"]);
-    toml_fails("[integrator]\nkind = \"path\"\nmax_bounces = -1\n", (3, 15), &["from 0 to 4294967295"]);
+    toml_fails("[integrator]\nkind = \"path\"\nmax_bounces = -1\n", (3, 15), &["0 to 1000000"]);
+    toml_fails("[integrator]\nextinction = \"off\"\nmax_bounces = 4294967295\n", (3, 15), &["0 to 1000000"]);
 }
 
 #[test]
