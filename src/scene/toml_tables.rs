@@ -1,7 +1,7 @@
 //! The tables of a scene file, as `scenes/README.md` describes them.
 
 use super::toml_values::{
-    Angle, Blades, Bounces, Colour, Exponent, Exposure, FilterRadius, Finite, Fov, Pixels, Positive, Probability,
+    Angle, Blades, Bounces, Colour, Eta, Exponent, Exposure, FilterRadius, Finite, Fov, Pixels, Positive, Probability,
     Samples, Triple, Unit,
 };
 use super::{AreaSampling, Directions, Extinction, Filter, LightSampling, Sampler};
@@ -130,7 +130,7 @@ pub(super) struct MaterialTable {
     pub one_sided: Option<bool>,
     pub reflection: Option<Colour>,
     pub transmission: Option<Colour>,
-    pub eta: Option<Positive>,
+    pub eta: Option<Eta>,
     pub impulse_probability: Option<Probability>,
     pub opacity: Option<Unit>,
     pub ambient_map: Option<Spanned<String>>,

@@ -1,6 +1,7 @@
 //! Numbers of a scene file that are checked as they are read, so that an error points at the very value.
 
 use super::Estimator;
+use super::material::{ETAS, LARGEST_EXPONENT};
 use glam::{DVec3, Vec3};
 use serde::Deserialize;
 
@@ -86,6 +87,11 @@ pub(super) struct Pixels(pub u32);
 #[serde(try_from = "i64")]
 pub(super) struct Bounces(pub u32);
 
+/// An index of refraction.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(try_from = "f64")]
+pub(super) struct Eta(pub f32);
+
 /// Samples a pixel.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(try_from = "i64")]
@@ -129,9 +135,18 @@ impl TryFrom<f64> for Exponent {
     type Error = &'static str;
     fn try_from(number: f64) -> Checked<Self> {
         let exponent = number as f32;
-        (exponent.is_finite() && exponent >= 0.0)
+        (0.0..=LARGEST_EXPONENT)
+            .contains(&exponent)
             .then_some(Exponent(exponent))
-            .ok_or("expected a finite number of at least 0")
+            .ok_or("expected an exponent of at least 0, at most 1e8; sharper is a mirror (`reflection`)")
+    }
+}
+
+impl TryFrom<f64> for Eta {
+    type Error = &'static str;
+    fn try_from(number: f64) -> Checked<Self> {
+        let eta = number as f32;
+        ETAS.contains(&eta).then_some(Eta(eta)).ok_or("expected an index of refraction from 0.01 to 100")
     }
 }
 
