@@ -187,6 +187,18 @@ fn environments_that_make_no_sense() {
     folder.fails_at("scene.toml", "scene.toml", (4, 9), &["sky.hdr"]);
 }
 
+/// The header alone decides: nothing follows it here.
+#[test]
+fn an_environment_has_only_so_many_texels() {
+    let sky = |width: u32, height: u32| {
+        let scene = format!("{OBJECT}[environment]\nimage = \"sky.ppm\"\n");
+        obj(TRIANGLE).with("scene.toml", scene).with("sky.ppm", format!("P6 {width} {height} 255\n"))
+    };
+    sky(16_384, 8193).fails_at("scene.toml", "scene.toml", (4, 9), &["sky.ppm", "134234112 texels", "134217728"]);
+    let error = sky(16_384, 16).error("scene.toml").to_string();
+    assert!(!error.contains("texels"), "damaged, but not too large: {error}");
+}
+
 #[test]
 fn luminaires_that_are_never_met_are_dark() {
     let scene = tables("[integrator]\nestimator = \"no-light-sampling\"\n");
