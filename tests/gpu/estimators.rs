@@ -16,7 +16,7 @@ fn measure(backend: &Intersector, scene: &Scene) -> Estimate {
 }
 
 /// The same mean from light sampling, none and both; from uniform, cosine and BSDF directions; from every termination that is unbiased; by
-/// area and by solid angle; by either sampler. Two-sided t-tests against the default, each with its own seed, corrected for their number.
+/// area and by solid angle. Two-sided t-tests against the default, each with its own seed, corrected for their number.
 #[test]
 fn every_unbiased_estimator_has_one_mean() {
     if on_the_old_driver() {

@@ -10,7 +10,7 @@ use luminaire::gpu::model::Features;
 use luminaire::reference::Reference;
 use luminaire::scene::{AreaSampling, Directions, Estimator, Extinction, Integrator, LightSampling, Projection, Scene};
 
-/// The three scenes that have all features between them.
+/// The four scenes that have all features between them.
 pub fn scenes(size: u32) -> Vec<(&'static str, Scene)> {
     let mut parallel = textured_room(size, size);
     parallel.sensor.projection = Projection::Orthographic { height: 3.0 };
