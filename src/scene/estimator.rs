@@ -126,6 +126,18 @@ impl Estimator {
         PRESETS.iter().find(|(preset, _)| *preset == name).map(|(_, estimator)| *estimator)
     }
 
+    /// The names that [`Estimator::preset`] knows: `default` and those of [`PRESETS`].
+    pub fn preset_names() -> impl Iterator<Item = &'static str> {
+        std::iter::once("default").chain(PRESETS.iter().map(|(name, _)| *name))
+    }
+
+    /// The names of all estimators, the simple ray tracer among them, for messages: "`simple`, `default`, ...".
+    pub fn names_in_words() -> String {
+        let names: Vec<_> =
+            std::iter::once("simple").chain(Self::preset_names()).map(|name| format!("`{name}`")).collect();
+        names.join(", ")
+    }
+
     /// Whether every path ends: chance ends it, or a limit of at most [`Estimator::MOST_BOUNCES`]. The tracers do not check it, and
     /// may never come back where it is false; [`backend::open`](crate::backend::open) does.
     pub fn ends(&self) -> bool {

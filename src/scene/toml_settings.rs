@@ -3,8 +3,8 @@
 use super::toml::File;
 use super::toml_tables::{EnvironmentTable, FilmTable, IntegratorKind, IntegratorTable, SensorKind, SensorTable};
 use super::{
-    Environment, Estimator, EstimatorChanges, FilmSettings, Integrator, Lens, PRESETS, Projection, Sensor,
-    environment_file, preview,
+    Environment, Estimator, EstimatorChanges, FilmSettings, Integrator, Lens, Projection, Sensor, environment_file,
+    preview,
 };
 use crate::{Error, Result};
 use ::toml::Spanned;
@@ -166,9 +166,8 @@ impl File<'_> {
         let estimator = match preset {
             None => Estimator::default(),
             Some(name) => Estimator::preset(name.get_ref()).ok_or_else(|| {
-                let names: Vec<_> = PRESETS.iter().map(|(name, _)| format!("`{name}`")).collect();
-                let (name, names, span) = (name.get_ref(), names.join(", "), name.span());
-                self.error(span, format!("no estimator is called `{name}`, expected `simple`, `default`, {names}"))
+                let expected = Estimator::names_in_words();
+                self.error(name.span(), format!("no estimator is called `{}`, expected {expected}", name.get_ref()))
             })?,
         };
         let estimator = EstimatorChanges {

@@ -102,7 +102,7 @@ fn estimators_by_name_and_by_parts() {
 #[test]
 fn estimators_that_make_no_sense() {
     let fails = |text: &str, at, words: &[&str]| toml_fails(&format!("[integrator]\n{text}\n"), at, words);
-    fails("estimator = \"photon\"", (2, 13), &["`photon`", "`simple`", "`literal-extinction`"]);
+    fails("estimator = \"photon\"", (2, 13), &["`photon`", "`simple`, `default`", "`literal-extinction`"]);
     fails("light_sampling = \"some\"", (2, 18), &["some", "mis"]);
     fails("extinction = \"off\"", (2, 14), &["max_bounces"]);
     fails("albedo_threshold = 2", (2, 20), &["from 0 to 1"]);
