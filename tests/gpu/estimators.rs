@@ -56,8 +56,9 @@ fn every_unbiased_estimator_has_one_mean() {
     assert_eq!(validation_messages(), 0);
 }
 
-/// A closed shell of albedo `a` that emits 1. By chance alone (no light sampling) extinction without re-weighting gives `1 / (1 - a^2)`; with
-/// direct light, whose first share is not lost, `1 + a / (1 - a^2)`; a threshold cuts the series `1 + a + a^2 + ...`, and so does a depth.
+/// A closed shell of albedo `a` that emits 1. By chance alone (no light sampling) extinction without re-weighting gives `1 / (1 - a^2)`;
+/// with direct light, whose first share is not lost, `1 + a / (1 - a^2)`; a threshold cuts the series `1 + a + a^2 + ...`, and so does a
+/// depth.
 #[test]
 fn biased_estimators_are_off_by_what_they_should() {
     if on_the_old_driver() {

@@ -23,8 +23,8 @@ pub fn scenes(size: u32) -> Vec<(&'static str, Scene)> {
     ]
 }
 
-/// Same random numbers, few bounces: pixel by pixel the picture of the reference, to 2e-4. Samples that fall on different sides of an edge, or
-/// of a choice, are allowed to 1 pixel in 200.
+/// Same random numbers, few bounces: pixel by pixel the picture of the reference, to 2e-4. Samples that fall on different sides of an
+/// edge, or of a choice, are allowed to 1 pixel in 200.
 #[test]
 fn every_feature_equals_the_reference_pixel_by_pixel() {
     for (name, mut scene) in scenes(96) {
