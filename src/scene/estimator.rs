@@ -28,8 +28,8 @@ pub struct Estimator {
     pub extinction: Extinction,
     /// A path whose combined albedo falls below this ends (slide "Albedo Termination"): a bias.
     pub albedo_threshold: Option<f32>,
-    /// At most this many indirect bounces, up to [`Estimator::MOST_BOUNCES`]; none: no limit. 0 is direct light only. Emission at bounce `max_bounces + 1` still
-    /// counts where it is direct light.
+    /// At most this many indirect bounces, up to [`Estimator::MOST_BOUNCES`]; none: no limit. 0 is direct light only. Emission at
+    /// bounce `max_bounces + 1` still counts where it is direct light.
     pub max_bounces: Option<u32>,
 }
 

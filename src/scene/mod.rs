@@ -173,14 +173,14 @@ pub enum Projection {
         /// Vertical field of view in degrees, in (0, 180).
         fov: f32,
     },
-    /// Parallel rays.
+    /// Parallel rays; with a lens those through the middle of the aperture, which moves along with the pixel (a telecentric lens).
     Orthographic {
         /// Height of what the picture shows, in the scene's unit; greater than 0.
         height: f32,
     },
 }
 
-/// A thin lens around the eye point.
+/// A thin lens around the eye point; with parallel rays around the point where each ray begins.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lens {
     /// Radius of the aperture, greater than 0; for blades, of the circle through the corners.

@@ -86,10 +86,6 @@ impl File<'_> {
                 }
             };
         };
-        if table.kind == SensorKind::Orthographic {
-            let message = "an orthographic sensor has no lens: everything is in focus; leave `aperture` out";
-            return Err(self.error(aperture.span(), message));
-        }
         let radius = aperture.get_ref().0;
         if radius == 0.0 {
             return Ok(None);

@@ -1,8 +1,8 @@
 //! The tables of a scene file, as `scenes/README.md` describes them.
 
 use super::toml_values::{
-    Angle, Blades, Bounces, Colour, Eta, Exponent, Exposure, FilterRadius, Finite, Fov, Pixels, Positive, Probability,
-    Samples, Triple, Unit,
+    Angle, Blades, Bounces, Colour, Eta, Exponent, Exposure, FilterRadius, Finite, Fov, NotNegative, Pixels, Positive,
+    Probability, Samples, Triple, Unit,
 };
 use super::{AreaSampling, Directions, Extinction, Filter, LightSampling, Sampler};
 use ::toml::Spanned;
@@ -46,7 +46,7 @@ pub(super) struct SensorTable {
     pub up: Option<Triple>,
     pub fov: Option<Spanned<Fov>>,
     pub height: Option<Spanned<Positive>>,
-    pub aperture: Option<Spanned<Exponent>>,
+    pub aperture: Option<Spanned<NotNegative>>,
     pub focus_distance: Option<Spanned<Positive>>,
     pub blades: Option<Spanned<Blades>>,
     pub blade_rotation: Option<Spanned<Finite>>,

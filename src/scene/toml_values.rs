@@ -47,6 +47,11 @@ pub(super) struct Exponent(pub f32);
 #[serde(try_from = "f64")]
 pub(super) struct Exposure(pub f32);
 
+/// A finite number of at least 0.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(try_from = "f64")]
+pub(super) struct NotNegative(pub f32);
+
 /// A finite number greater than 0.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(try_from = "f64")]
@@ -147,6 +152,16 @@ impl TryFrom<f64> for Eta {
     fn try_from(number: f64) -> Checked<Self> {
         let eta = number as f32;
         ETAS.contains(&eta).then_some(Eta(eta)).ok_or("expected an index of refraction from 0.01 to 100")
+    }
+}
+
+impl TryFrom<f64> for NotNegative {
+    type Error = &'static str;
+    fn try_from(number: f64) -> Checked<Self> {
+        let number = number as f32;
+        (number.is_finite() && number >= 0.0)
+            .then_some(NotNegative(number))
+            .ok_or("expected a finite number of at least 0")
     }
 }
 

@@ -21,6 +21,9 @@ fn sensors_are_perspective_or_orthographic() {
     assert_eq!(sensor("kind = \"perspective\"\nfov = 33\n").projection, Projection::Perspective { fov: 33.0 });
     let orthographic = sensor("kind = \"orthographic\"\nheight = 2.5\n");
     assert_eq!((orthographic.projection, orthographic.lens), (Projection::Orthographic { height: 2.5 }, None));
+    let telecentric = sensor("kind = \"orthographic\"\nheight = 2.5\naperture = 0.5\nblades = 5\n");
+    let lens = Lens { radius: 0.5, focus_distance: 4.0, blades: 5, rotation: 0.0 };
+    assert_eq!((telecentric.projection, telecentric.lens), (Projection::Orthographic { height: 2.5 }, Some(lens)));
     let lens = sensor("fov = 33\naperture = 0.5\n").lens;
     assert_eq!(
         lens,
@@ -41,7 +44,7 @@ fn sensors_that_make_no_sense() {
     toml_fails(&at("kind = \"orthographic\"\nheight = 2\nfov = 3\n"), (6, 7), &["perspective"]);
     toml_fails(&at("kind = \"fisheye\"\n"), (4, 8), &["fisheye", "orthographic"]);
     toml_fails(&at("kind = \"orthographic\"\nheight = 0\n"), (5, 10), &["above 0"]);
-    toml_fails(&at("kind = \"orthographic\"\nheight = 1\naperture = 1\n"), (6, 12), &["no lens"]);
+    toml_fails(&at("kind = \"orthographic\"\nheight = 1\nblades = 5\n"), (6, 10), &["aperture"]);
     toml_fails(&at("fov = 3\naperture = -1\n"), (5, 12), &["at least 0"]);
     toml_fails(&at("fov = 3\naperture = 1\nfocus_distance = 0\n"), (6, 18), &["above 0"]);
     toml_fails(&at("fov = 3\naperture = 1\nblades = 2\n"), (6, 10), &["3 to 64"]);
