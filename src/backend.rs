@@ -3,7 +3,7 @@
 use crate::gpu::{Device, GpuTracer, Instance, PhysicalDevice};
 use crate::reference::Reference;
 use crate::render::Tracer;
-use crate::scene::Scene;
+use crate::scene::{Integrator, Scene};
 use crate::{Error, Result};
 use std::time::Instant;
 
@@ -81,8 +81,17 @@ pub struct DeviceReport {
 /// Opens the best tracer for a request.
 ///
 /// # Errors
-/// If the request names a device or backend that is not there, or the scene does not fit it.
+/// If the request names a device or backend that is not there, the scene does not fit it, or its estimator has paths that
+/// never end ([`Estimator::ends`](crate::scene::Estimator::ends)).
 pub fn open(scene: &Scene, request: &Request) -> Result<Opened> {
+    if let Integrator::Path(estimator) = &scene.integrator
+        && !estimator.ends()
+    {
+        return Err(Error::Usage(format!(
+            "without extinction a path never ends: limit max_bounces to at most {}",
+            crate::scene::Estimator::MOST_BOUNCES
+        )));
+    }
     if request.backend == Some(Backend::Cpu) {
         if let Some(device) = &request.device {
             return Err(Error::Usage(format!("--device {device} has no meaning with --backend cpu")));
@@ -247,6 +256,7 @@ pub fn devices() -> Result<Vec<DeviceReport>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::{Estimator, Extinction, load};
     use ash::vk::PhysicalDeviceType as Type;
 
     #[test]
@@ -255,6 +265,27 @@ mod tests {
         assert_eq!(preferred(false, false).0, Backend::ComputeBvh);
         assert_eq!(preferred(true, true).0, Backend::ComputeBvh);
         assert_eq!(preferred(false, true).0, Backend::ComputeBvh);
+    }
+
+    #[test]
+    fn a_scene_whose_paths_never_end_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.obj");
+        std::fs::write(&path, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+        let mut scene = load(&path).unwrap();
+        let request = Request { backend: Some(Backend::Cpu), device: None };
+        let most = Estimator::MOST_BOUNCES;
+        for (max_bounces, ends) in [(None, false), (Some(u32::MAX), false), (Some(most + 1), false), (Some(most), true)]
+        {
+            let endless = Estimator { extinction: Extinction::Off, max_bounces, ..Estimator::default() };
+            scene.integrator = Integrator::Path(endless);
+            match open(&scene, &request) {
+                Ok(_) => assert!(ends, "{max_bounces:?}"),
+                Err(error) => {
+                    assert!(!ends && error.exit_code() == 2 && error.to_string().contains("max_bounces"), "{error}")
+                }
+            }
+        }
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use luminaire::scene::{
-    AreaSampling, Directions, Estimator, EstimatorChanges, Extinction, Integrator, LightSampling, PRESETS, Sampler,
+    AreaSampling, Directions, Estimator, EstimatorChanges, Extinction, Integrator, LightSampling, Sampler,
 };
 use luminaire::{Error, Result};
 use serde::Deserialize;
@@ -46,7 +46,7 @@ pub struct EstimatorOptions {
     #[arg(long, value_name = "ALBEDO", allow_negative_numbers = true, value_parser = threshold)]
     pub albedo_threshold: Option<f32>,
     /// At most so many indirect bounces; 0 is direct light alone.
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(..=1_000_000))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(..=i64::from(Estimator::MOST_BOUNCES)))]
     pub max_bounces: Option<u32>,
     /// Where the random numbers come from: independent, or sobol (less noise) [default: the scene's].
     #[arg(long, value_name = "NAME", value_parser = named::<Sampler>)]
@@ -71,10 +71,7 @@ fn estimator(name: &str) -> std::result::Result<Choice, String> {
     if name == "simple" {
         return Ok(Choice::Simple);
     }
-    Estimator::preset(name).map(Choice::Path).ok_or_else(|| {
-        let names: Vec<_> = PRESETS.iter().map(|(name, _)| format!("`{name}`")).collect();
-        format!("expected `simple`, `default`, {}", names.join(", "))
-    })
+    Estimator::preset(name).map(Choice::Path).ok_or_else(|| format!("expected {}", Estimator::names_in_words()))
 }
 
 fn threshold(text: &str) -> std::result::Result<f32, String> {
@@ -163,10 +160,9 @@ pub fn describe(integrator: &Integrator) -> String {
         }
         Integrator::Path(estimator) => estimator,
     };
-    let names = std::iter::once("default").chain(PRESETS.iter().map(|(name, _)| *name));
     // A limit of bounces is no other estimator.
     let unlimited = Estimator { max_bounces: None, ..*estimator };
-    let preset = names.into_iter().find(|name| Estimator::preset(name) == Some(unlimited));
+    let preset = Estimator::preset_names().find(|name| Estimator::preset(name) == Some(unlimited));
     let preset = preset.map_or(String::new(), |name| format!(", estimator `{name}`"));
     let light = match estimator.light_sampling {
         LightSampling::None => "light found by chance alone",
@@ -270,8 +266,18 @@ mod tests {
 
     #[test]
     fn the_long_help_names_every_preset() {
-        for (name, _) in PRESETS {
+        for name in ["simple"].into_iter().chain(Estimator::preset_names()) {
             assert!(PRESET_TABLE.contains(&format!("\n  {name} ")), "{name}");
+        }
+    }
+
+    #[test]
+    fn every_estimator_that_is_listed_is_an_estimator() {
+        let message = estimator("photon").unwrap_err();
+        let listed: Vec<_> = message.split('`').skip(1).step_by(2).collect();
+        assert_eq!(listed.len(), 7, "{message}");
+        for name in listed {
+            assert!(estimator(name).is_ok(), "{name}");
         }
     }
 

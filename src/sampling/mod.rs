@@ -13,7 +13,6 @@
 //! | [`scatter_block`]`(b)` | direction, u | direction, v | which lobe | extinction |
 //!
 //! Whether a ray passes a surface that is partly transparent is decided by [`coverage`], for each surface on its way.
-
 //!
 //! [`Sampler::Sobol`] spreads the samples of a pixel out: numbers 0 and 1 of a block form one two-dimensional point set, numbers 2
 //! and 3 another ([`sobol`]). What belongs together, such as the two numbers of a direction, is therefore such a pair.
@@ -26,12 +25,12 @@ pub use alias::AliasTable;
 /// The block that the sensor draws from.
 pub const SENSOR_BLOCK: u32 = 0;
 
-/// The block for direct light and extinction at bounce `bounce`.
+/// The block for direct light at bounce `bounce`.
 pub fn light_block(bounce: u32) -> u32 {
     1 + 2 * bounce
 }
 
-/// The block for the choice of a direction at bounce `bounce`.
+/// The block for the choice of a direction and for extinction at bounce `bounce`.
 pub fn scatter_block(bounce: u32) -> u32 {
     2 + 2 * bounce
 }

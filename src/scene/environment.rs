@@ -2,7 +2,7 @@
 
 use super::{Environment, EnvironmentImage};
 use crate::sampling::AliasTable;
-use glam::DVec3;
+use glam::Vec3;
 use std::f64::consts::PI;
 
 /// Texels of an environment, one of which is chosen by the light that comes from it; a constant environment is one texel.
@@ -27,12 +27,10 @@ impl EnvironmentDistribution {
         let factor = environment.radiance.as_dvec3();
         let mean: Vec<f64> = match &environment.image {
             None => vec![factor.element_sum() / 3.0],
-            Some(image) => {
-                smoothed(image).into_iter().map(|radiance| (radiance * factor).element_sum() / 3.0).collect()
-            }
+            Some(image) => smoothed(image, |texel| (texel.as_dvec3() * factor).element_sum() / 3.0),
         };
         let solid_angle = |texel: usize| texel_solid_angle(width, height, texel as u32 / width);
-        let weights: Vec<f64> = mean.iter().enumerate().map(|(texel, mean)| mean * solid_angle(texel)).collect();
+        let weights: Vec<f64> = mean.into_iter().enumerate().map(|(texel, mean)| mean * solid_angle(texel)).collect();
         let total: f64 = weights.iter().sum();
         if total <= 0.0 {
             return None;
@@ -50,22 +48,59 @@ fn texel_solid_angle(width: u32, height: u32, row: u32) -> f64 {
     2.0 * PI / f64::from(width) * 2.0 * middle.sin() * (0.5 * step).sin()
 }
 
-/// The mean over each texel's square of the image as it is looked up, which is bilinear: a direction that carries light can then
-/// never have the density zero. Columns wrap around, rows end at the poles.
-fn smoothed(image: &EnvironmentImage) -> Vec<DVec3> {
+/// The mean over each texel's square of the image's `brightness` as it is looked up, which is bilinear: a direction that carries
+/// light can then never have the density zero. Columns wrap around, rows end at the poles. `brightness` is linear, so it does not
+/// matter that it is taken first, and one number a texel is all the memory that is needed.
+fn smoothed(image: &EnvironmentImage, brightness: impl Fn(&Vec3) -> f64) -> Vec<f64> {
     let (width, height) = (image.width as usize, image.height as usize);
-    let texel = |x: usize, y: usize| image.texels[y * width + x].as_dvec3();
-    let row: Vec<DVec3> = (0..width * height)
-        .map(|i| {
-            let (x, y) = (i % width, i / width);
-            0.125 * (texel((x + width - 1) % width, y) + texel((x + 1) % width, y)) + 0.75 * texel(x, y)
-        })
-        .collect();
-    (0..width * height)
-        .map(|i| {
-            let (x, y) = (i % width, i / width);
-            let (up, down) = (y.saturating_sub(1), (y + 1).min(height - 1));
-            0.125 * (row[up * width + x] + row[down * width + x]) + 0.75 * row[i]
-        })
-        .collect()
+    let mut texels: Vec<f64> = image.texels.iter().map(brightness).collect();
+    for row in texels.chunks_exact_mut(width) {
+        let (first, mut left) = (row[0], row[width - 1]);
+        for x in 0..width {
+            let (here, right) = (row[x], row.get(x + 1).copied().unwrap_or(first));
+            row[x] = 0.125 * (left + right) + 0.75 * here;
+            left = here;
+        }
+    }
+    // The row above as it was; above the first one is itself.
+    let mut above = texels[..width].to_vec();
+    for y in 0..height {
+        let below = (y + 1).min(height - 1) * width;
+        for x in 0..width {
+            let here = texels[y * width + x];
+            texels[y * width + x] = 0.125 * (above[x] + texels[below + x]) + 0.75 * here;
+            above[x] = here;
+        }
+    }
+    texels
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Against the nine texels' weights written out.
+    #[test]
+    fn a_texel_is_smoothed_with_its_neighbours() {
+        for (width, height) in [(1, 1), (1, 3), (2, 1), (2, 2), (3, 2), (5, 4)] {
+            let texels =
+                (0..width * height).map(|i| Vec3::new((i * 7 % 11) as f32, (i * 5 % 7) as f32, (i % 3) as f32));
+            let image = EnvironmentImage { name: String::new(), width, height, texels: texels.collect() };
+            let brightness = |texel: &Vec3| texel.as_dvec3().dot(glam::DVec3::new(0.5, 2.0, 1.0));
+            let found = smoothed(&image, brightness);
+            assert_eq!(found.len(), image.texels.len());
+            for (i, found) in (0..).zip(found) {
+                let (x, y) = (i % width, i / width);
+                let columns = [((x + width - 1) % width, 0.125), (x, 0.75), ((x + 1) % width, 0.125)];
+                let rows = [(y.saturating_sub(1), 0.125), (y, 0.75), ((y + 1).min(height - 1), 0.125)];
+                let mut expected = 0.0;
+                for (column, a) in columns {
+                    for (row, b) in rows {
+                        expected += a * b * brightness(&image.texels[(row * width + column) as usize]);
+                    }
+                }
+                assert!((found - expected).abs() < 1e-12, "{width} x {height}, texel {i}: {found} {expected}");
+            }
+        }
+    }
 }

@@ -5,12 +5,18 @@ use super::image_file::ImageFile;
 use glam::Vec3;
 use std::path::Path;
 
+/// Most texels of an environment, 16384 x 8192: choosing among them takes several times the memory of the image itself.
+const MOST_TEXELS: u64 = 1 << 27;
+
 /// Reads a latitude-longitude image; none if it is black. What is negative or not finite is replaced, with a warning.
 ///
 /// # Errors
 /// In words that can follow the file's name.
 pub(super) fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Option<EnvironmentImage>, String> {
-    let image = ImageFile::open(path)?;
+    let too_many = |texels| {
+        format!("it has {texels} texels, and an environment at most {MOST_TEXELS}: make a smaller image of it")
+    };
+    let image = ImageFile::open(path, MOST_TEXELS, too_many)?;
     let (mut odd, mut infinite) = (0u64, 0u64);
     let mut texels: Vec<Vec3> = (0..image.len())
         .map(|texel| {

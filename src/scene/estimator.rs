@@ -44,8 +44,8 @@ pub struct Estimator {
     pub extinction: Extinction,
     /// A path whose combined albedo falls below this ends (slide "Albedo Termination"): a bias.
     pub albedo_threshold: Option<f32>,
-    /// At most this many indirect bounces; none: no limit. 0 is direct light only. Emission at bounce `max_bounces + 1` still
-    /// counts where it is direct light.
+    /// At most this many indirect bounces, up to [`Estimator::MOST_BOUNCES`]; none: no limit. 0 is direct light only. Emission at
+    /// bounce `max_bounces + 1` still counts where it is direct light.
     pub max_bounces: Option<u32>,
 }
 
@@ -131,6 +131,9 @@ pub const PRESETS: [(&str, Estimator); 5] = [
 ];
 
 impl Estimator {
+    /// The largest limit of bounces; whatever is beyond counts as no limit.
+    pub const MOST_BOUNCES: u32 = 1_000_000;
+
     /// The preset of a name; none if there is no such.
     pub fn preset(name: &str) -> Option<Estimator> {
         if name == "default" {
@@ -139,9 +142,22 @@ impl Estimator {
         PRESETS.iter().find(|(preset, _)| *preset == name).map(|(_, estimator)| *estimator)
     }
 
-    /// Whether every path ends: chance ends it, or a limit.
+    /// The names that [`Estimator::preset`] knows: `default` and those of [`PRESETS`].
+    pub fn preset_names() -> impl Iterator<Item = &'static str> {
+        std::iter::once("default").chain(PRESETS.iter().map(|(name, _)| *name))
+    }
+
+    /// The names of all estimators, the simple ray tracer among them, for messages: "`simple`, `default`, ...".
+    pub fn names_in_words() -> String {
+        let names: Vec<_> =
+            std::iter::once("simple").chain(Self::preset_names()).map(|name| format!("`{name}`")).collect();
+        names.join(", ")
+    }
+
+    /// Whether every path ends: chance ends it, or a limit of at most [`Estimator::MOST_BOUNCES`]. The tracers do not check it, and
+    /// may never come back where it is false; [`backend::open`](crate::backend::open) does.
     pub fn ends(&self) -> bool {
-        self.extinction != Extinction::Off || self.max_bounces.is_some()
+        self.extinction != Extinction::Off || self.max_bounces.is_some_and(|bounces| bounces <= Self::MOST_BOUNCES)
     }
 }
 

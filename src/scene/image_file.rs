@@ -1,7 +1,7 @@
 //! Images from disk, in whatever format the `image` crate decodes.
 
 use half::f16;
-use image::{DynamicImage, ImageReader, Limits};
+use image::{DynamicImage, ImageDecoder, ImageError, ImageReader, Limits};
 use rayon::prelude::*;
 use std::path::Path;
 use std::sync::LazyLock;
@@ -42,11 +42,12 @@ enum Texels {
 }
 
 impl ImageFile {
-    /// Reads a file; its content says which format it is, and its ending only where the content does not.
+    /// Reads a file; its content says which format it is, and its ending only where the content does not. An image of more than
+    /// `most` texels is refused as soon as its header tells the size, in the words of `too_many`, which is given that number.
     ///
     /// # Errors
     /// In words that can follow the file's name: it cannot be read, is no image, is damaged, or is too large.
-    pub(super) fn open(path: &Path) -> Result<Self, String> {
+    pub(super) fn open(path: &Path, most: u64, too_many: impl FnOnce(u64) -> String) -> Result<Self, String> {
         let about = std::fs::metadata(path).map_err(|e| e.to_string())?;
         if !about.is_file() {
             // A pipe or a device may never end.
@@ -58,15 +59,17 @@ impl ImageFile {
         limits.max_image_width = Some(LARGEST_SIDE);
         limits.max_image_height = Some(LARGEST_SIDE);
         limits.max_alloc = Some(MOST_MEMORY);
-        reader.limits(limits);
-        let image = reader.decode().map_err(|error| match error {
-            image::ImageError::Limits(_) => format!(
-                "it is too large: at most {LARGEST_SIDE} x {LARGEST_SIDE} texels and {} GiB are read",
-                MOST_MEMORY >> 30
-            ),
-            image::ImageError::Unsupported(_) => format!("it is in no format that can be read here ({error})"),
-            _ => error.to_string(),
-        })?;
+        reader.limits(limits.clone());
+        let mut decoder = reader.into_decoder().map_err(in_words)?;
+        let (width, height) = decoder.dimensions();
+        let texels = u64::from(width) * u64::from(height);
+        if texels > most {
+            return Err(too_many(texels));
+        }
+        // What the decoder takes for itself may be on top of the picture.
+        limits.reserve(decoder.total_bytes()).map_err(in_words)?;
+        decoder.set_limits(limits).map_err(in_words)?;
+        let image = DynamicImage::from_decoder(decoder).map_err(in_words)?;
         let (width, height, has_alpha) = (image.width(), image.height(), image.color().has_alpha());
         if width == 0 || height == 0 {
             return Err("it has no texels".into());
@@ -149,6 +152,18 @@ impl ImageFile {
                 Texels::Sixteen(data) => data.chunks_exact(4).any(|texel| texel[3] < u16::MAX),
                 Texels::Float(data) => data.chunks_exact(4).any(|texel| texel[3] < 1.0),
             }
+    }
+}
+
+/// What a decoder complains about.
+fn in_words(error: ImageError) -> String {
+    match error {
+        ImageError::Limits(_) => format!(
+            "it is too large: at most {LARGEST_SIDE} x {LARGEST_SIDE} texels and {} GiB are read",
+            MOST_MEMORY >> 30
+        ),
+        ImageError::Unsupported(_) => format!("it is in no format that can be read here ({error})"),
+        _ => error.to_string(),
     }
 }
 

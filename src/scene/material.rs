@@ -3,6 +3,7 @@
 use super::texture::{MapFile, Textures};
 use super::{Maps, Material};
 use glam::Vec3;
+use std::ops::RangeInclusive;
 
 /// The exponent of a glossy material that states none.
 pub(super) const DEFAULT_EXPONENT: f32 = 10.0;
@@ -10,6 +11,11 @@ pub(super) const DEFAULT_EXPONENT: f32 = 10.0;
 pub(super) const DEFAULT_LAMBERT: Vec3 = Vec3::splat(0.8);
 /// The index of refraction of glass that states none.
 pub(super) const DEFAULT_ETA: f32 = 1.5;
+
+/// Indices of refraction that are modelled. Matter has 1 to about 4; the squares of these still leave single precision room.
+pub(super) const ETAS: RangeInclusive<f32> = 0.01..=100.0;
+/// The largest exponent: its lobe is a hundredth of a degree wide, which no picture tells from a mirror.
+pub(super) const LARGEST_EXPONENT: f32 = 1e8;
 
 /// What MTL and scene file say about a material.
 #[derive(Debug, Clone, Default)]
@@ -22,7 +28,7 @@ pub(super) struct Draft {
     pub diffuse: Option<Vec3>,
     /// `Ks`.
     pub glossy: Option<Vec3>,
-    /// `Ns`.
+    /// `Ns`, at most [`LARGEST_EXPONENT`].
     pub exponent: Option<f32>,
     /// `Ke`.
     pub emission: Option<Vec3>,
@@ -32,7 +38,7 @@ pub(super) struct Draft {
     pub reflection: Option<Vec3>,
     /// Albedo of the impulse transmission.
     pub transmission: Option<Vec3>,
-    /// Index of refraction, greater than 0.
+    /// Index of refraction, one of [`ETAS`].
     pub eta: Option<f32>,
     /// Probability of taking an impulse.
     pub impulse_probability: Option<f32>,

@@ -4,7 +4,7 @@
 //! whatever is wrong in an MTL file is a warning with its line.
 
 use super::map_options;
-use super::material::{DEFAULT_ETA, Draft, MapDraft};
+use super::material::{DEFAULT_ETA, Draft, ETAS, LARGEST_EXPONENT, MapDraft};
 use super::text::{Tally, read_text};
 use crate::Result;
 use glam::Vec3;
@@ -97,7 +97,7 @@ impl Reader<'_> {
             "Kd" => draft.diffuse = self.colour(keyword, &words).or(draft.diffuse),
             "Ks" => draft.glossy = self.colour(keyword, &words).or(draft.glossy),
             "Ke" => draft.emission = self.colour(keyword, &words).or(draft.emission),
-            "Ns" => draft.exponent = self.number(keyword, &words, 0.0).or(draft.exponent),
+            "Ns" => draft.exponent = self.exponent(&words).or(draft.exponent),
             "d" => {
                 let words = words.strip_prefix(&["-halo"]).map_or(&words[..], |rest| {
                     current.ignore("d -halo".into());
@@ -110,8 +110,7 @@ impl Reader<'_> {
                 self.warn(&format!("Tf {} is not modelled, only Tf with three numbers; ignored", words[0]));
             }
             "Tf" => current.filter = self.colour(keyword, &words).or(current.filter),
-            // Some exporters write 0 where they know none.
-            "Ni" => current.refraction = self.number(keyword, &words, 0.0).filter(|ni| *ni > 0.0),
+            "Ni" => current.refraction = self.refraction(&words),
             "illum" => match words.first().and_then(|word| word.parse().ok()).filter(|model| *model <= 10) {
                 Some(model) => current.illum = Some(model),
                 None => self.warn("illum needs a number from 0 to 10; ignored"),
@@ -187,6 +186,26 @@ impl Reader<'_> {
             self.warn(&format!("{keyword} is negative; 0 is used where it is"));
         }
         Some(colour.max(Vec3::ZERO))
+    }
+
+    /// `Ns`; what is larger than any that is modelled becomes the largest one.
+    fn exponent(&mut self, words: &[&str]) -> Option<f32> {
+        let exponent = self.number("Ns", words, 0.0)?;
+        if exponent > LARGEST_EXPONENT {
+            self.warn(&format!("Ns {exponent} is above {LARGEST_EXPONENT:e}, the largest exponent; that is used"));
+        }
+        Some(exponent.min(LARGEST_EXPONENT))
+    }
+
+    /// `Ni`; none if it is 0, which some exporters write where they know none.
+    fn refraction(&mut self, words: &[&str]) -> Option<f32> {
+        let ni = self.number("Ni", words, 0.0).filter(|ni| *ni > 0.0)?;
+        let (least, most) = (ETAS.start(), ETAS.end());
+        if !ETAS.contains(&ni) {
+            self.warn(&format!("Ni needs an index of refraction from {least} to {most}, found `{ni}`; ignored"));
+            return None;
+        }
+        Some(ni)
     }
 
     /// A finite number of at least `least`; none if it is wrong, which is a warning.

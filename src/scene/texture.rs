@@ -8,6 +8,9 @@ use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
+/// Most texels of all textures of a scene together: 2 GiB as they are kept.
+const MOST_TEXELS: u64 = 1 << 28;
+
 /// Where a material's map is and how it is to be read.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct MapFile {
@@ -57,6 +60,8 @@ pub(super) struct Textures {
     pub loaded: Vec<Texture>,
     /// For each of them.
     ranges: Vec<Range>,
+    /// Their texels.
+    texels: u64,
     by_key: HashMap<Key, Option<u32>>,
     fallback: Option<u32>,
     said: HashSet<String>,
@@ -176,8 +181,14 @@ impl Textures {
         if let Some(texture) = self.by_key.get(&key) {
             return *texture;
         }
-        let texture = match ImageFile::open(&path) {
+        let too_many = |texels| {
+            format!(
+                "with its {texels} texels the textures of the scene would have more than {MOST_TEXELS}: make them smaller"
+            )
+        };
+        let texture = match ImageFile::open(&path, MOST_TEXELS - self.texels, too_many) {
             Ok(image) => {
+                self.texels += image.len() as u64;
                 let texels = texels(&image, map, scalar);
                 let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
                 let (width, height) = (image.width, image.height);
@@ -283,6 +294,23 @@ impl Texture {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_scene_has_only_so_many_texels() {
+        let folder = tempfile::tempdir().unwrap();
+        let image = |side: u32| {
+            let name = format!("{side}.png");
+            image::RgbImage::new(side, side).save(folder.path().join(&name)).unwrap();
+            MapFile::plain(vec![name], folder.path(), "a.mtl:1".into())
+        };
+        let [three, four] = [image(3), image(4)];
+        let mut textures = Textures { texels: MOST_TEXELS - 24, ..Textures::default() };
+        let mut warnings = Vec::new();
+        assert!(textures.optional(&four, &mut warnings).is_some() && warnings.is_empty());
+        assert_eq!(textures.optional(&three, &mut warnings), None);
+        assert!(warnings.len() == 1 && warnings[0].contains("3.png") && warnings[0].contains("its 9 texels"));
+        assert_eq!(textures.optional(&four, &mut warnings), Some(0), "what is there already costs nothing");
+    }
 
     #[test]
     fn the_range_is_that_of_the_numbers() {

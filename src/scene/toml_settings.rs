@@ -3,8 +3,8 @@
 use super::toml::File;
 use super::toml_tables::{EnvironmentTable, FilmTable, IntegratorKind, IntegratorTable, SensorKind, SensorTable};
 use super::{
-    Environment, Estimator, EstimatorChanges, FilmSettings, Integrator, Lens, PRESETS, Projection, Sensor,
-    environment_file, preview,
+    Environment, Estimator, EstimatorChanges, FilmSettings, Integrator, Lens, Projection, Sensor, environment_file,
+    preview,
 };
 use crate::{Error, Result};
 use ::toml::Spanned;
@@ -86,10 +86,6 @@ impl File<'_> {
                 }
             };
         };
-        if table.kind == SensorKind::Orthographic {
-            let message = "an orthographic sensor has no lens: everything is in focus; leave `aperture` out";
-            return Err(self.error(aperture.span(), message));
-        }
         let radius = aperture.get_ref().0;
         if radius == 0.0 {
             return Ok(None);
@@ -166,9 +162,8 @@ impl File<'_> {
         let estimator = match preset {
             None => Estimator::default(),
             Some(name) => Estimator::preset(name.get_ref()).ok_or_else(|| {
-                let names: Vec<_> = PRESETS.iter().map(|(name, _)| format!("`{name}`")).collect();
-                let (name, names, span) = (name.get_ref(), names.join(", "), name.span());
-                self.error(span, format!("no estimator is called `{name}`, expected `simple`, `default`, {names}"))
+                let expected = Estimator::names_in_words();
+                self.error(name.span(), format!("no estimator is called `{}`, expected {expected}", name.get_ref()))
             })?,
         };
         let estimator = EstimatorChanges {
@@ -177,7 +172,7 @@ impl File<'_> {
             directions: table.directions.as_ref().map(|part| *part.get_ref()),
             extinction: table.extinction.as_ref().map(|part| *part.get_ref()),
             albedo_threshold: table.albedo_threshold.as_ref().map(|part| part.get_ref().0),
-            max_bounces: table.max_bounces.as_ref().map(|part| *part.get_ref()),
+            max_bounces: table.max_bounces.as_ref().map(|part| part.get_ref().0),
         }
         .apply(estimator);
         if !estimator.ends() {

@@ -1,8 +1,8 @@
 //! The tables of a scene file, as `scenes/README.md` describes them.
 
 use super::toml_values::{
-    Angle, Blades, Colour, Exponent, Exposure, FilterRadius, Finite, Fov, Pixels, Positive, Probability, Samples,
-    Triple, Unit,
+    Angle, Blades, Bounces, Colour, Eta, Exponent, Exposure, FilterRadius, Finite, Fov, NotNegative, Pixels, Positive,
+    Probability, Samples, Triple, Unit,
 };
 use super::{AreaSampling, Directions, Extinction, Filter, LightSampling, Sampler};
 use ::toml::Spanned;
@@ -46,7 +46,7 @@ pub(super) struct SensorTable {
     pub up: Option<Triple>,
     pub fov: Option<Spanned<Fov>>,
     pub height: Option<Spanned<Positive>>,
-    pub aperture: Option<Spanned<Exponent>>,
+    pub aperture: Option<Spanned<NotNegative>>,
     pub focus_distance: Option<Spanned<Positive>>,
     pub blades: Option<Spanned<Blades>>,
     pub blade_rotation: Option<Spanned<Finite>>,
@@ -79,7 +79,7 @@ pub(super) struct IntegratorTable {
     pub directions: Option<Spanned<Directions>>,
     pub extinction: Option<Spanned<Extinction>>,
     pub albedo_threshold: Option<Spanned<Unit>>,
-    pub max_bounces: Option<Spanned<u32>>,
+    pub max_bounces: Option<Spanned<Bounces>>,
 }
 
 #[derive(Deserialize, Clone, Copy, PartialEq, Eq)]
@@ -130,7 +130,7 @@ pub(super) struct MaterialTable {
     pub one_sided: Option<bool>,
     pub reflection: Option<Colour>,
     pub transmission: Option<Colour>,
-    pub eta: Option<Positive>,
+    pub eta: Option<Eta>,
     pub impulse_probability: Option<Probability>,
     pub opacity: Option<Unit>,
     pub ambient_map: Option<Spanned<String>>,

@@ -1,5 +1,7 @@
 //! Numbers of a scene file that are checked as they are read, so that an error points at the very value.
 
+use super::Estimator;
+use super::material::{ETAS, LARGEST_EXPONENT};
 use glam::{DVec3, Vec3};
 use serde::Deserialize;
 
@@ -45,6 +47,11 @@ pub(super) struct Exponent(pub f32);
 #[serde(try_from = "f64")]
 pub(super) struct Exposure(pub f32);
 
+/// A finite number of at least 0.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(try_from = "f64")]
+pub(super) struct NotNegative(pub f32);
+
 /// A finite number greater than 0.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(try_from = "f64")]
@@ -79,6 +86,16 @@ pub(super) struct Blades(pub u32);
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(try_from = "i64")]
 pub(super) struct Pixels(pub u32);
+
+/// Limit of indirect bounces.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(try_from = "i64")]
+pub(super) struct Bounces(pub u32);
+
+/// An index of refraction.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(try_from = "f64")]
+pub(super) struct Eta(pub f32);
 
 /// Samples a pixel.
 #[derive(Debug, Clone, Copy, Deserialize)]
@@ -123,8 +140,27 @@ impl TryFrom<f64> for Exponent {
     type Error = &'static str;
     fn try_from(number: f64) -> Checked<Self> {
         let exponent = number as f32;
-        (exponent.is_finite() && exponent >= 0.0)
+        (0.0..=LARGEST_EXPONENT)
+            .contains(&exponent)
             .then_some(Exponent(exponent))
+            .ok_or("expected an exponent of at least 0, at most 1e8; sharper is a mirror (`reflection`)")
+    }
+}
+
+impl TryFrom<f64> for Eta {
+    type Error = &'static str;
+    fn try_from(number: f64) -> Checked<Self> {
+        let eta = number as f32;
+        ETAS.contains(&eta).then_some(Eta(eta)).ok_or("expected an index of refraction from 0.01 to 100")
+    }
+}
+
+impl TryFrom<f64> for NotNegative {
+    type Error = &'static str;
+    fn try_from(number: f64) -> Checked<Self> {
+        let number = number as f32;
+        (number.is_finite() && number >= 0.0)
+            .then_some(NotNegative(number))
             .ok_or("expected a finite number of at least 0")
     }
 }
@@ -191,6 +227,14 @@ impl TryFrom<i64> for Pixels {
     type Error = &'static str;
     fn try_from(pixels: i64) -> Checked<Self> {
         (1..=LARGEST_FILM).contains(&pixels).then_some(Pixels(pixels as u32)).ok_or("expected 1 to 65536 pixels")
+    }
+}
+
+impl TryFrom<i64> for Bounces {
+    type Error = &'static str;
+    fn try_from(bounces: i64) -> Checked<Self> {
+        let bounces = u32::try_from(bounces).ok().filter(|n| *n <= Estimator::MOST_BOUNCES);
+        bounces.map(Bounces).ok_or("expected 0 to 1000000 bounces; for no limit leave it out")
     }
 }
 

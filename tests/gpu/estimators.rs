@@ -16,7 +16,7 @@ fn measure(backend: &Intersector, scene: &Scene) -> Estimate {
 }
 
 /// The same mean from light sampling, none and both; from uniform, cosine and BSDF directions; from every termination that is unbiased; by
-/// area and by solid angle; by either sampler. Two-sided t-tests against the default, each with its own seed, corrected for their number.
+/// area and by solid angle. Two-sided t-tests against the default, each with its own seed, corrected for their number.
 #[test]
 fn every_unbiased_estimator_has_one_mean() {
     if on_the_old_driver() {
@@ -56,8 +56,9 @@ fn every_unbiased_estimator_has_one_mean() {
     assert_eq!(validation_messages(), 0);
 }
 
-/// A closed shell of albedo `a` that emits 1. By chance alone (no light sampling) extinction without re-weighting gives `1 / (1 - a^2)`; with
-/// direct light, whose first share is not lost, `1 + a / (1 - a^2)`; a threshold cuts the series `1 + a + a^2 + ...`, and so does a depth.
+/// A closed shell of albedo `a` that emits 1. By chance alone (no light sampling) extinction without re-weighting gives `1 / (1 - a^2)`;
+/// with direct light, whose first share is not lost, `1 + a / (1 - a^2)`; a threshold cuts the series `1 + a + a^2 + ...`, and so does a
+/// depth.
 #[test]
 fn biased_estimators_are_off_by_what_they_should() {
     if on_the_old_driver() {

@@ -10,7 +10,7 @@ use luminaire::gpu::model::Features;
 use luminaire::reference::Reference;
 use luminaire::scene::{AreaSampling, Directions, Estimator, Extinction, Integrator, LightSampling, Projection, Scene};
 
-/// The three scenes that have all features between them.
+/// The four scenes that have all features between them.
 pub fn scenes(size: u32) -> Vec<(&'static str, Scene)> {
     let mut parallel = textured_room(size, size);
     parallel.sensor.projection = Projection::Orthographic { height: 3.0 };
@@ -23,8 +23,8 @@ pub fn scenes(size: u32) -> Vec<(&'static str, Scene)> {
     ]
 }
 
-/// Same random numbers, few bounces: pixel by pixel the picture of the reference, to 2e-4. Samples that fall on different sides of an edge, or
-/// of a choice, are allowed to 1 pixel in 200.
+/// Same random numbers, few bounces: pixel by pixel the picture of the reference, to 2e-4. Samples that fall on different sides of an
+/// edge, or of a choice, are allowed to 1 pixel in 200.
 #[test]
 fn every_feature_equals_the_reference_pixel_by_pixel() {
     for (name, mut scene) in scenes(96) {

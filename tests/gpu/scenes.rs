@@ -31,8 +31,8 @@ fn small(file: &Path) -> (String, Scene) {
     (file.file_stem().expect("a name").to_string_lossy().into_owned(), scene)
 }
 
-/// Same random numbers, at most two indirect bounces: the reference's picture, but for the samples that rounding puts on the other side of an edge
-/// or of a choice. Glass turns every such sample into another one.
+/// Same random numbers, at most two indirect bounces: the reference's picture, but for the samples that rounding puts on the other side
+/// of an edge or of a choice. Glass turns every such sample into another one.
 #[test]
 fn scenes_equal_the_reference_pixel_by_pixel() {
     for file in scene_files() {

@@ -7,7 +7,6 @@ use crate::common::directions::EXPONENTS;
 use glam::DVec3;
 use luminaire::gpu::probe::{Call, Function, Probe};
 use luminaire::reference::{impulse, warp};
-use luminaire::sampling::{coverage, ray_salt};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 use std::f64::consts::TAU;
@@ -20,7 +19,6 @@ fn small_functions_match_to_rounding() {
         hemispheres(&probe);
         half_vectors(&probe);
         refraction(&probe);
-        decisions_about_holes(&probe);
     });
 }
 
@@ -143,15 +141,4 @@ fn refraction(probe: &Probe) {
         }
     }
     assert!(total > 20_000 && partial > 100_000, "{total} {partial}");
-}
-
-/// The same bits.
-fn decisions_about_holes(probe: &Probe) {
-    let mut rng = StdRng::seed_from_u64(15);
-    let calls: Vec<Call> = (0..50_000).map(|_| [rng.random(), rng.random()]).collect();
-    for (arguments, result) in calls.iter().zip(probe.call(Function::Coverage, &calls).expect("the probe runs")) {
-        let [[pixel, sample, ray, seed], [object, triangle, ..]] = *arguments;
-        let salt = ray_salt(pixel, sample, ray, seed);
-        assert_eq!(result[0][..2], [salt, coverage(salt, object, triangle)], "{arguments:?}");
-    }
 }

@@ -111,8 +111,8 @@ fn constant_and_black_environments() {
     assert_eq!(tracer.environment_pdf(DVec3::Y), 0.0);
 }
 
-/// A white surface in a white environment is white, also where light sampling is busy elsewhere half of the time: the probability of choosing
-/// the environment belongs to the weights.
+/// A white surface in a white environment is white, also where light sampling is busy elsewhere half of the time: the probability of
+/// choosing the environment belongs to the weights.
 #[test]
 fn white_is_white_among_other_luminaires() {
     let mut scene = empty(8, 8);

@@ -116,6 +116,22 @@ fn illum_3_5_and_8_are_mirrors_where_they_are_sharp() {
 }
 
 #[test]
+fn extreme_numbers_are_clamped_or_ignored() {
+    let (m, warnings) = read("Ks .5 .5 .5\nNs 2e8\nillum 2");
+    assert_eq!(m.exponent, 1e8);
+    assert!(warnings.len() == 1 && warnings[0].contains("mesh.mtl:3: Ns 200000000 is above 1e8"), "{warnings:?}");
+    for ni in ["1e-3", "101", "1e30"] {
+        let (m, warnings) = read(&format!("Ni {ni}\nillum 7"));
+        assert_eq!(m.eta, Some(1.5), "{ni}");
+        assert!(warnings.iter().any(|w| w.contains("mesh.mtl:2: Ni") && w.contains("0.01 to 100")), "{warnings:?}");
+    }
+    for (ni, ns) in [(0.01, 0.0), (100.0, 1e8)] {
+        let (m, warnings) = read(&format!("Ni {ni:?}\nNs {ns:?}\nillum 7"));
+        assert_eq!((m.eta, m.exponent, warnings.as_slice()), (Some(ni), ns, &[][..]));
+    }
+}
+
+#[test]
 fn illum_4_6_7_and_9_are_glass() {
     for illum in [4, 6, 7, 9] {
         let (m, warnings) = read(&format!("Ks .5 .5 .5\nTf .1 .2 .3\nNi 1\nNs 3\nd 0.25\nTr 0.5\nillum {illum}"));

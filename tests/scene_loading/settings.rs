@@ -21,6 +21,9 @@ fn sensors_are_perspective_or_orthographic() {
     assert_eq!(sensor("kind = \"perspective\"\nfov = 33\n").projection, Projection::Perspective { fov: 33.0 });
     let orthographic = sensor("kind = \"orthographic\"\nheight = 2.5\n");
     assert_eq!((orthographic.projection, orthographic.lens), (Projection::Orthographic { height: 2.5 }, None));
+    let telecentric = sensor("kind = \"orthographic\"\nheight = 2.5\naperture = 0.5\nblades = 5\n");
+    let lens = Lens { radius: 0.5, focus_distance: 4.0, blades: 5, rotation: 0.0 };
+    assert_eq!((telecentric.projection, telecentric.lens), (Projection::Orthographic { height: 2.5 }, Some(lens)));
     let lens = sensor("fov = 33\naperture = 0.5\n").lens;
     assert_eq!(
         lens,
@@ -41,7 +44,7 @@ fn sensors_that_make_no_sense() {
     toml_fails(&at("kind = \"orthographic\"\nheight = 2\nfov = 3\n"), (6, 7), &["perspective"]);
     toml_fails(&at("kind = \"fisheye\"\n"), (4, 8), &["fisheye", "orthographic"]);
     toml_fails(&at("kind = \"orthographic\"\nheight = 0\n"), (5, 10), &["above 0"]);
-    toml_fails(&at("kind = \"orthographic\"\nheight = 1\naperture = 1\n"), (6, 12), &["no lens"]);
+    toml_fails(&at("kind = \"orthographic\"\nheight = 1\nblades = 5\n"), (6, 10), &["aperture"]);
     toml_fails(&at("fov = 3\naperture = -1\n"), (5, 12), &["at least 0"]);
     toml_fails(&at("fov = 3\naperture = 1\nfocus_distance = 0\n"), (6, 18), &["above 0"]);
     toml_fails(&at("fov = 3\naperture = 1\nblades = 2\n"), (6, 10), &["3 to 64"]);
@@ -102,7 +105,7 @@ fn estimators_by_name_and_by_parts() {
 #[test]
 fn estimators_that_make_no_sense() {
     let fails = |text: &str, at, words: &[&str]| toml_fails(&format!("[integrator]\n{text}\n"), at, words);
-    fails("estimator = \"photon\"", (2, 13), &["`photon`", "`simple`", "`literal-extinction`"]);
+    fails("estimator = \"photon\"", (2, 13), &["`photon`", "`simple`, `default`", "`literal-extinction`"]);
     fails("light_sampling = \"some\"", (2, 18), &["some", "mis"]);
     fails("extinction = \"off\"", (2, 14), &["max_bounces"]);
     fails("albedo_threshold = 2", (2, 20), &["from 0 to 1"]);
@@ -185,6 +188,18 @@ fn environments_that_make_no_sense() {
     let damaged = format!("{OBJECT}[environment]\nimage = \"sky.hdr\"\n");
     let folder = obj(TRIANGLE).with("scene.toml", damaged).with("sky.hdr", "#?RADIANCE\nnothing");
     folder.fails_at("scene.toml", "scene.toml", (4, 9), &["sky.hdr"]);
+}
+
+/// The header alone decides: nothing follows it here.
+#[test]
+fn an_environment_has_only_so_many_texels() {
+    let sky = |width: u32, height: u32| {
+        let scene = format!("{OBJECT}[environment]\nimage = \"sky.ppm\"\n");
+        obj(TRIANGLE).with("scene.toml", scene).with("sky.ppm", format!("P6 {width} {height} 255\n"))
+    };
+    sky(16_384, 8193).fails_at("scene.toml", "scene.toml", (4, 9), &["sky.ppm", "134234112 texels", "134217728"]);
+    let error = sky(16_384, 16).error("scene.toml").to_string();
+    assert!(!error.contains("texels"), "damaged, but not too large: {error}");
 }
 
 #[test]

@@ -192,14 +192,30 @@ fn numbers_out_of_range_are_found_with_line_and_column() {
     toml_fails(&sensor("position", "[0, 1]"), (2, 12), &["length"]);
     toml_fails("[[material]]\nname = \"m\"\ndiffuse = [0.5, -0.1, 0]\n", (3, 11), &["negative"]);
     toml_fails("[[material]]\nname = \"m\"\nexponent = -1\n", (3, 12), &["at least 0"]);
-    toml_fails("[[material]]\nname = \"m\"\neta = 0\n", (3, 7), &["above 0"]);
-    toml_fails("[[material]]\nname = \"m\"\neta = inf\n", (3, 7), &["above 0"]);
+    toml_fails("[[material]]\nname = \"m\"\neta = 0\n", (3, 7), &["from 0.01 to 100"]);
+    toml_fails("[[material]]\nname = \"m\"\neta = 0.0099\n", (3, 7), &["from 0.01 to 100"]);
+    toml_fails("[[material]]\nname = \"m\"\neta = 100.1\n", (3, 7), &["from 0.01 to 100"]);
+    toml_fails("[[material]]\nname = \"m\"\neta = inf\n", (3, 7), &["from 0.01 to 100"]);
+    toml_fails("[[material]]\nname = \"m\"\nexponent = 1.1e8\n", (3, 12), &["at most 1e8"]);
+    toml_fails("[[material]]\nname = \"m\"\nexponent = nan\n", (3, 12), &["at most 1e8"]);
     toml_fails("[[material]]\nname = \"m\"\nopacity = 1.5\n", (3, 11), &["from 0 to 1"]);
     toml_fails("[[material]]\nname = \"m\"\nimpulse_probability = -0.1\n", (3, 23), &["above 0 and below 1"]);
     toml_fails("[[material]]\nname = \"m\"\nimpulse_probability = 1\n", (3, 23), &["above 0 and below 1"]);
     toml_fails("[[object]]\nmesh = \"mesh.obj\"\nsmooth = 181\n", (3, 10), &["0 to 180"]);
     toml_fails("[[object]]\nmesh = \"mesh.obj\"\nscale = \"big\"\n", (3, 9), &["a number or three numbers"]);
-    toml_fails("[integrator]\nkind = \"path\"\nmax_bounces = -1\n", (3, 15), &["from 0 to 4294967295"]);
+    toml_fails("[integrator]\nkind = \"path\"\nmax_bounces = -1\n", (3, 15), &["0 to 1000000"]);
+    toml_fails("[integrator]\nextinction = \"off\"\nmax_bounces = 4294967295\n", (3, 15), &["0 to 1000000"]);
+}
+
+#[test]
+fn the_extremes_of_material_numbers_are_accepted() {
+    for (eta, exponent) in [(0.01, 0.0), (100.0, 1e8)] {
+        let material =
+            format!("material = \"m\"\n[[material]]\nname = \"m\"\neta = {eta:?}\nexponent = {exponent:?}\n");
+        let loaded = scene(&material).load("scene.toml");
+        let m = loaded.materials.iter().find(|m| m.name == "m").expect("the material");
+        assert_eq!((m.eta, m.exponent), (Some(eta), exponent));
+    }
 }
 
 #[test]

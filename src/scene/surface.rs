@@ -1,0 +1,114 @@
+//! What surfaces are made of: materials and the textures on them.
+
+use glam::{DVec3, Vec3};
+use half::f16;
+
+/// The surface's scattering and emission: normalised Blinn-Phong (slide "Surface Element Class") and impulses (slides "Impulse
+/// Reflection", "Adding Transmission").
+///
+/// `lambert + glossy + max(reflection, transmission) <= 1` in every channel, each times the largest texel of its map; the loader
+/// scales down what exceeds it and warns.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Material {
+    /// The name in the MTL or scene file.
+    pub name: String,
+    /// Albedo for the ambient stand-in of the simple ray tracer (`Ka`).
+    pub ambient: Vec3,
+    /// Diffuse albedo (`Kd`).
+    pub lambert: Vec3,
+    /// Glossy albedo at normal incidence (`Ks`).
+    pub glossy: Vec3,
+    /// Blinn-Phong exponent, 0 to 1e8 (`Ns`).
+    pub exponent: f32,
+    /// Emitted radiance (`Ke`).
+    pub emission: Vec3,
+    /// Whether only the outward side emits: the one from which the corners are seen counter-clockwise, or to which the vertex normals
+    /// point.
+    pub one_sided: bool,
+    /// Albedo of the impulse reflection: all of it at every angle without `eta` (a mirror), times Fresnel's reflectance with it.
+    pub reflection: Vec3,
+    /// Albedo of the impulse transmission, times one minus Fresnel's reflectance (`Tf`); zero without `eta`.
+    pub transmission: Vec3,
+    /// Index of refraction of what lies behind the outward normal over that in front of it (`Ni`), 0.01 to 100; none: no
+    /// Fresnel, no transmission.
+    pub eta: Option<f32>,
+    /// Probability with which a path takes an impulse where there is something else too, in (0, 1); none: the impulses' share of the
+    /// albedo at that angle. It changes the noise, never the mean.
+    pub impulse_probability: Option<f32>,
+    /// Share of light that meets the surface at all, 0 (a hole) to 1 (`d`); the rest passes straight on.
+    pub opacity: f32,
+    /// Textures that multiply the numbers above.
+    pub maps: Maps,
+}
+
+/// Indices into [`Scene::textures`](super::Scene::textures); each texture multiplies the number of the same name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Maps {
+    /// `map_Ka`.
+    pub ambient: Option<u32>,
+    /// `map_Kd`.
+    pub lambert: Option<u32>,
+    /// `map_Ks`.
+    pub glossy: Option<u32>,
+    /// `map_Ke`.
+    pub emission: Option<u32>,
+    /// `map_d`, or the alpha of `map_Kd`: the texture's alpha channel counts.
+    pub opacity: Option<u32>,
+}
+
+/// An image on surfaces, bilinear between texel centres.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Texture {
+    /// A name for messages: the file name.
+    pub name: String,
+    /// Width in texels, at least 1.
+    pub width: u32,
+    /// Height in texels, at least 1.
+    pub height: u32,
+    /// Linear RGB and alpha, from the upper left, row by row; not negative, finite. Half floats: both tracers see these very
+    /// numbers (11 bits; 8-bit sRGB loses at most 0.05 %).
+    pub texels: Vec<[f16; 4]>,
+    /// Coordinates outside [0, 1] stay at the border instead of repeating (`-clamp on`).
+    pub clamp: bool,
+}
+
+impl Default for Material {
+    /// Black and opaque.
+    fn default() -> Self {
+        Material {
+            name: String::new(),
+            ambient: Vec3::ZERO,
+            lambert: Vec3::ZERO,
+            glossy: Vec3::ZERO,
+            exponent: 0.0,
+            emission: Vec3::ZERO,
+            one_sided: false,
+            reflection: Vec3::ZERO,
+            transmission: Vec3::ZERO,
+            eta: None,
+            impulse_probability: None,
+            opacity: 1.0,
+            maps: Maps::default(),
+        }
+    }
+}
+
+impl Material {
+    /// Whether anything is mirrored or refracted.
+    pub fn has_impulse(&self) -> bool {
+        self.reflection != Vec3::ZERO || (self.transmission != Vec3::ZERO && self.eta.is_some())
+    }
+
+    /// Whether a ray may pass the surface as if it were not there.
+    pub fn has_holes(&self) -> bool {
+        self.opacity < 1.0 || self.maps.opacity.is_some()
+    }
+}
+
+impl Texture {
+    /// The mean of the colours, unweighted by alpha.
+    pub fn mean(&self) -> DVec3 {
+        let sum: DVec3 = self.texels.iter().map(|[r, g, b, _]| DVec3::new(r.to_f64(), g.to_f64(), b.to_f64())).sum();
+        sum / self.texels.len() as f64
+    }
+}
