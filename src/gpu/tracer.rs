@@ -29,7 +29,8 @@ pub struct GpuTracer {
 }
 
 impl GpuTracer {
-    /// Uploads a scene, builds its acceleration structure, and the kernel that it needs.
+    /// Uploads a scene, builds its acceleration structure, and the kernel that it needs. The caller sees to it that the estimator ends
+    /// ([`crate::scene::Estimator::ends`]); [`crate::backend::open`] refuses the others.
     ///
     /// # Errors
     /// If the scene is beyond a limit of the device, or the driver fails.

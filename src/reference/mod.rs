@@ -60,7 +60,8 @@ fn gamma(n: f64) -> f64 {
 }
 
 impl Reference {
-    /// A tracer that finds triangles through a tree of boxes.
+    /// A tracer that finds triangles through a tree of boxes. The caller sees to it that the estimator ends
+    /// ([`crate::scene::Estimator::ends`]).
     pub fn new(scene: &Scene) -> Self {
         let mut reference = Self::brute_force(scene);
         reference.trees = Some(Trees::new(scene, &reference.instances));
