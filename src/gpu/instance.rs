@@ -76,8 +76,7 @@ impl Instance {
             device: "the Vulkan loader".into(),
             reason: match result {
                 vk::Result::ERROR_INCOMPATIBLE_DRIVER => {
-                    "no driver is installed (or VK_DRIVER_FILES names none); run with --backend cpu or install one"
-                        .into()
+                    "no driver is installed (or VK_DRIVER_FILES names none)".into()
                 }
                 other => other.to_string(),
             },

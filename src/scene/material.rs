@@ -140,6 +140,17 @@ impl Draft {
             (None, true) => Vec3::ZERO,
             (None, false) => DEFAULT_LAMBERT,
         });
+        let impulses = reflection != Vec3::ZERO || transmission != Vec3::ZERO;
+        let without = [
+            ("eta", self.eta.is_some() && !impulses, "`reflection` or `transmission`"),
+            ("impulse_probability", self.impulse_probability.is_some() && !impulses, "`reflection` or `transmission`"),
+            ("one_sided", self.one_sided.is_some() && emission == Vec3::ZERO, "`emission`"),
+        ];
+        for (key, idle, other) in without {
+            if idle {
+                warnings.push(format!("material `{name}`: `{key}` does nothing without {other}"));
+            }
+        }
         let mut material = Material {
             name: name.clone(),
             ambient: match (self.ambient, self.maps.ambient.file()) {
@@ -287,6 +298,16 @@ mod tests {
         let lamp = Draft { emission: Some(Vec3::ONE), ..Draft::named("lamp") };
         assert_eq!(finish(&lamp, &mut warnings).lambert, Vec3::ZERO);
         assert!(warnings.is_empty());
+    }
+
+    #[test]
+    fn keys_that_do_nothing_are_warned_about() {
+        let draft =
+            Draft { eta: Some(1.5), impulse_probability: Some(0.5), one_sided: Some(true), ..Draft::named("glass") };
+        let mut warnings = Vec::new();
+        draft.finish(&mut Textures::default(), &mut warnings);
+        assert_eq!(warnings.len(), 3, "{warnings:?}");
+        assert!(warnings[0].contains("`eta` does nothing without"), "{warnings:?}");
     }
 
     #[test]
