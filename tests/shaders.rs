@@ -113,6 +113,26 @@ fn structures_are_laid_out_alike() {
     }
 }
 
+/// Names of a module by their ids, and the numbers of one decoration.
+fn names_and_decorations(
+    module: &rspirv::dr::Module,
+    decoration: Decoration,
+) -> (HashMap<u32, String>, HashMap<u32, u32>) {
+    let (mut names, mut numbers) = (HashMap::new(), HashMap::new());
+    for i in module.debug_names.iter().chain(&module.annotations) {
+        match (i.class.opcode, i.operands.as_slice()) {
+            (Op::Name, [Operand::IdRef(id), Operand::LiteralString(name)]) => drop(names.insert(*id, name.clone())),
+            (Op::Decorate, [Operand::IdRef(id), Operand::Decoration(found), Operand::LiteralBit32(number)])
+                if *found == decoration =>
+            {
+                numbers.insert(*id, *number);
+            }
+            _ => {}
+        }
+    }
+    (names, numbers)
+}
+
 /// Arrays of structures have the host's stride.
 #[test]
 fn array_strides_are_the_host_s_sizes() {
@@ -120,18 +140,7 @@ fn array_strides_are_the_host_s_sizes() {
     let mut checked = 0;
     for shader in SHADERS {
         let module = rspirv::dr::load_bytes(shader.spirv).expect("valid SPIR-V");
-        let mut names = HashMap::new();
-        let mut strides = HashMap::new();
-        for i in module.debug_names.iter().chain(&module.annotations) {
-            match (i.class.opcode, i.operands.as_slice()) {
-                (Op::Name, [Operand::IdRef(id), Operand::LiteralString(name)]) => drop(names.insert(*id, name.clone())),
-                (
-                    Op::Decorate,
-                    [Operand::IdRef(id), Operand::Decoration(Decoration::ArrayStride), Operand::LiteralBit32(stride)],
-                ) => drop(strides.insert(*id, *stride)),
-                _ => {}
-            }
-        }
+        let (names, strides) = names_and_decorations(&module, Decoration::ArrayStride);
         for i in &module.types_global_values {
             if let (Op::TypeRuntimeArray, [Operand::IdRef(element)]) = (i.class.opcode, i.operands.as_slice())
                 && let (Some(name), Some(stride)) = (names.get(element), strides.get(&i.result_id.expect("a type")))
@@ -153,18 +162,7 @@ fn specialization_constants_have_the_host_s_order() {
         Features::CONSTANTS.iter().chain(&KernelModel::CONSTANTS).map(|name| name.to_uppercase()).collect();
     for shader in SHADERS {
         let module = rspirv::dr::load_bytes(shader.spirv).expect("valid SPIR-V");
-        let mut names = HashMap::new();
-        let mut ids = HashMap::new();
-        for i in module.debug_names.iter().chain(&module.annotations) {
-            match (i.class.opcode, i.operands.as_slice()) {
-                (Op::Name, [Operand::IdRef(id), Operand::LiteralString(name)]) => drop(names.insert(*id, name.clone())),
-                (
-                    Op::Decorate,
-                    [Operand::IdRef(id), Operand::Decoration(Decoration::SpecId), Operand::LiteralBit32(spec)],
-                ) => drop(ids.insert(*id, *spec)),
-                _ => {}
-            }
-        }
+        let (names, ids) = names_and_decorations(&module, Decoration::SpecId);
         assert!(!ids.is_empty(), "{}", shader.name);
         for (id, spec) in ids {
             assert_eq!(Some(&names[&id]), expected.get(spec as usize), "constant {spec} in {}", shader.name);

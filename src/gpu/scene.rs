@@ -150,7 +150,7 @@ fn material(scene: &Scene, table: &LuminaireTable, index: usize) -> layout::Mate
         ambient: vec4(material.ambient, normalisation),
         lambert: vec4(material.lambert, material.impulse_probability.map_or(-1.0, f64::from)),
         glossy: vec4(material.glossy, m),
-        emission: vec4(material.emission, table.area_density(scene, index as u32)),
+        emission: vec4(material.emission, table.area_density[index]),
         reflection: vec4(material.reflection, material.eta.map_or(0.0, f64::from)),
         transmission: vec4(transmission, f64::from(material.opacity)),
         maps: [map(maps.ambient), map(maps.lambert), map(maps.glossy), map(maps.emission)],

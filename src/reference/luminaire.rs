@@ -166,7 +166,7 @@ impl Reference {
         let object = &self.scene.objects[object as usize];
         let mesh = &self.scene.meshes[object.mesh as usize];
         let material = object.material.unwrap_or(mesh.triangles[triangle as usize].material);
-        let probability = self.luminaires.area_density(&self.scene, material) * area;
+        let probability = self.luminaires.area_density[material as usize] * area;
         probability * self.triangle_density(from, corners, surfel.position)
     }
 

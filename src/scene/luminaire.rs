@@ -49,8 +49,8 @@ pub struct LuminaireTable {
     pub choice: AliasTable,
     /// Which direction of the environment is chosen, if it is an entry.
     pub environment: Option<EnvironmentDistribution>,
-    /// Sum of all powers, in the unit of [`LuminaireTable::area_density`].
-    total_power: f64,
+    /// For each material, the probability of choosing a triangle of it, for each unit of its area; 0 if it does not emit.
+    pub area_density: Vec<f64>,
 }
 
 impl LuminaireTable {
@@ -93,16 +93,9 @@ impl LuminaireTable {
         let mut keep = emits.iter();
         entries.retain(|_| *keep.next().expect("one flag an entry"));
         let powers: Vec<f64> = powers.into_iter().filter(|p| *p > 0.0).collect();
-        let total_power = powers.iter().sum();
-        LuminaireTable { choice: AliasTable::new(&powers), entries, environment, total_power }
-    }
-
-    /// The probability of choosing a triangle of a material, for each unit of its area; 0 if the material does not emit.
-    pub fn area_density(&self, scene: &Scene, material: u32) -> f64 {
-        match exitance(scene, &scene.materials[material as usize]) {
-            0.0 => 0.0,
-            exitance => exitance / self.total_power,
-        }
+        let total_power: f64 = powers.iter().sum();
+        let area_density = exitance.iter().map(|e| if *e == 0.0 { 0.0 } else { e / total_power }).collect();
+        LuminaireTable { choice: AliasTable::new(&powers), entries, environment, area_density }
     }
 
     /// The probability of choosing the environment; 0 if there is none.
