@@ -63,6 +63,7 @@ pub mod error;
 pub mod film;
 pub mod gpu;
 pub mod image_io;
+pub mod measure;
 pub mod reference;
 pub mod render;
 pub mod sampling;

@@ -4,6 +4,7 @@
 //! is what the files hold and what the GPU receives; the reference widens the same numbers to `f64`, so both tracers see
 //! the same scene to the last bit.
 
+pub mod build;
 mod darkness;
 mod environment;
 mod environment_file;

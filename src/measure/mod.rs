@@ -1,0 +1,3 @@
+//! Measuring: statistics of pictures.
+
+pub mod statistics;
