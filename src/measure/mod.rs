@@ -1,3 +1,8 @@
-//! Measuring: statistics of pictures.
+//! Measuring: statistics of pictures, charts, and the sweeps that show where methods fail.
 
+pub mod chart;
+pub mod stability;
 pub mod statistics;
+mod workbench;
+
+pub use workbench::Workbench;

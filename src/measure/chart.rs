@@ -1,0 +1,66 @@
+//! Charts as data, and as SVG.
+
+/// How an axis is divided.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scale {
+    /// Evenly.
+    Linear,
+    /// By powers of ten. What is not above zero is drawn on the lower edge, and counted in the CSV as it is.
+    Log,
+}
+
+/// One axis of a chart.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Axis {
+    /// What it shows, with its unit.
+    pub label: String,
+    /// How it is divided.
+    pub scale: Scale,
+}
+
+impl Axis {
+    /// A linear axis.
+    pub fn linear(label: impl Into<String>) -> Self {
+        Axis { label: label.into(), scale: Scale::Linear }
+    }
+
+    /// A logarithmic axis.
+    pub fn log(label: impl Into<String>) -> Self {
+        Axis { label: label.into(), scale: Scale::Log }
+    }
+}
+
+/// A measured value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Point {
+    /// Where on the horizontal axis.
+    pub x: f64,
+    /// The value; NaN where the method gave none.
+    pub y: f64,
+    /// Its standard error, where it has one.
+    pub error: Option<f64>,
+}
+
+/// The values of one method.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Series {
+    /// Name of the method, as the legend and the CSV have it.
+    pub name: String,
+    /// In ascending order of `x`.
+    pub points: Vec<Point>,
+}
+
+/// Lines of several methods over one quantity.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Chart {
+    /// Part of the file's name: lower-case words with hyphens.
+    pub name: String,
+    /// Heading.
+    pub title: String,
+    /// Horizontal axis.
+    pub x: Axis,
+    /// Vertical axis.
+    pub y: Axis,
+    /// The lines.
+    pub series: Vec<Series>,
+}
