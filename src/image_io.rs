@@ -1,6 +1,14 @@
-//! Pictures on disk: PNG to look at, EXR and HDR to compute with.
+//! Pictures on disk: PNG to look at, EXR and HDR to compute with; and reading them, and PFM, to compare.
 //!
 //! Every file is written beside its final place and renamed, so that nobody ever sees half of one.
+
+pub(crate) mod image_file;
+mod openexr;
+mod pfm;
+mod picture;
+
+pub use openexr::{Attribute, Exr};
+pub use picture::{Picture, read};
 
 use crate::film::Film;
 use crate::{Error, Result};
@@ -115,6 +123,17 @@ pub fn save(path: &Path, film: &Film, exposure: f32) -> Result<()> {
 /// [`Error::Write`] if the system refuses; then nothing has changed at `path`.
 pub fn save_text(path: &Path, text: &str) -> Result<()> {
     write_atomically(path, |out| out.write_all(text.as_bytes()))
+}
+
+/// Writes an 8-bit picture as a PNG.
+///
+/// # Errors
+/// [`Error::Write`] if the system refuses; then nothing has changed at `path`.
+pub fn save_png(path: &Path, picture: &image::RgbImage) -> Result<()> {
+    write_atomically(path, |out| {
+        let (width, height) = picture.dimensions();
+        image::codecs::png::PngEncoder::new(out).write_image(picture, width, height, ExtendedColorType::Rgb8)
+    })
 }
 
 /// The non-linear sRGB value of a linear one in [0, 1] (IEC 61966-2-1).

@@ -1,6 +1,9 @@
-//! Measuring: statistics of pictures, charts, and the sweeps that show where methods fail.
+//! Measuring: statistics of pictures, how far two are apart, charts, and the sweeps that show where methods fail.
 
 pub mod chart;
+pub mod flip;
+pub mod heat_map;
+pub mod metrics;
 pub mod stability;
 pub mod statistics;
 mod workbench;
