@@ -28,9 +28,15 @@ const KNEE_VALUE: f32 = 0.95;
 
 /// Linear sRGB to CIE XYZ, by columns.
 const TO_XYZ: Mat3 = Mat3::from_cols_array(&[
-    0.412_386_56, 0.212_636_82, 0.019_330_62, //
-    0.357_591_5, 0.715_183, 0.119_197_16, //
-    0.180_450_49, 0.072_180_2, 0.950_372_6,
+    0.412_386_56,
+    0.212_636_82,
+    0.019_330_62, //
+    0.357_591_5,
+    0.715_183,
+    0.119_197_16, //
+    0.180_450_49,
+    0.072_180_2,
+    0.950_372_6,
 ]);
 /// XYZ of white (D65).
 const WHITE: Vec3 = Vec3::new(0.950_428_55, 1.0, 1.088_900_4);
@@ -74,12 +80,7 @@ pub fn low_dynamic_range(width: usize, height: usize, image: &[[f32; 3]], refere
 ///
 /// # Panics
 /// If a picture does not have `width * height` pixels.
-pub fn high_dynamic_range(
-    width: usize,
-    height: usize,
-    image: &[[f32; 3]],
-    reference: &[[f32; 3]],
-) -> HighDynamicRange {
+pub fn high_dynamic_range(width: usize, height: usize, image: &[[f32; 3]], reference: &[[f32; 3]]) -> HighDynamicRange {
     let (start, stop) = exposures(reference);
     let count = ((stop - start).ceil() as u32).max(2);
     let mut map = vec![0.0f32; width * height];
@@ -114,12 +115,11 @@ fn exposures(reference: &[[f32; 3]]) -> (f32, f32) {
     let [[a, b, c], [d, e, f]] = ACES;
     let (a, b, c) = (a - SHOWN * d, b - SHOWN * e, c - SHOWN * f);
     let bright = ((b * b - 4.0 * a * c).sqrt() - b) / (2.0 * a);
-    let mut luminance: Vec<f32> = reference.iter().map(|p| (TO_XYZ * Vec3::from(*p)).y.max(0.0)).collect();
+    let weights = Vec3::new(0.2126, 0.7152, 0.0722);
+    let mut luminance: Vec<f32> = reference.iter().map(|p| weights.dot(Vec3::from(*p)).max(0.0)).collect();
     luminance.sort_by(f32::total_cmp);
-    let stops = |luminance: f32| (bright / luminance.max(f32::EPSILON)).log2();
-    let n = luminance.len();
-    let median = 0.5 * (luminance[(n - 1) / 2] + luminance[n / 2]);
-    (stops(luminance[n - 1]), stops(median))
+    let stops = |luminance: Option<&f32>| (bright / luminance.map_or(0.0, |l| *l).max(f32::EPSILON)).log2();
+    (stops(luminance.last()), stops(luminance.get(luminance.len() / 2)))
 }
 
 /// A picture as the eye has it.

@@ -52,7 +52,8 @@ pub struct NonFinite {
     pub first: Option<(u32, u32)>,
 }
 
-/// A picture held against a reference. All means are over pixels that are finite in both, and over the channels where there is one number only.
+/// A picture held against a reference. All means are over the pixels that are finite in both (NaN if there are none), and over the channels where
+/// there is one number only.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Comparison {
     /// Pixels that are finite in both pictures.
@@ -78,7 +79,7 @@ pub struct Comparison {
 /// Compares two pictures, and lists at most `worst` pixels that differ.
 ///
 /// # Errors
-/// [`Error::Usage`] if the pictures do not have the same size, or no pixel is finite in both.
+/// [`Error::Usage`] if the pictures do not have the same size.
 pub fn compare(image: &Picture, reference: &Picture, worst: usize) -> Result<Comparison> {
     if (image.width, image.height) != (reference.width, reference.height) {
         return Err(Error::Usage(format!(
@@ -88,9 +89,6 @@ pub fn compare(image: &Picture, reference: &Picture, worst: usize) -> Result<Com
     }
     let pairs = || image.rgb.iter().zip(&reference.rgb).enumerate().filter(|(_, (a, b))| finite(a) && finite(b));
     let pixels = pairs().count();
-    if pixels == 0 {
-        return Err(Error::Usage("no pixel is finite in both pictures: there is nothing to compare".into()));
-    }
     let n = pixels as f64;
     let (mut squares, mut relative) = ([0.0; 3], 0.0);
     let (mut differences, mut means) = ([0.0; 3], [0.0; 3]);
@@ -268,11 +266,11 @@ mod tests {
     }
 
     #[test]
-    fn nothing_to_compare_is_an_error() {
+    fn pictures_of_different_sizes_are_an_error() {
         let (wide, high) = (picture(2, &[[1.0; 3]; 2]), picture(1, &[[1.0; 3]; 2]));
         let error = compare(&wide, &high, 5).unwrap_err();
         assert!(error.exit_code() == 2 && error.to_string().contains("2 x 1 and 1 x 2"), "{error}");
-        let odd = picture(2, &[[f32::NAN; 3]; 2]);
-        assert!(compare(&odd, &wide, 5).unwrap_err().to_string().contains("no pixel"));
+        let odd = compare(&picture(2, &[[f32::NAN; 3]; 2]), &wide, 5).unwrap();
+        assert!(odd.pixels == 0 && odd.rmse.is_nan());
     }
 }
