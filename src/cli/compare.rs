@@ -111,7 +111,7 @@ fn failures(options: &CompareOptions, comparison: &Comparison, flip: Option<&Fli
     }
     let mut check = |name: &str, value: f64, option: &str, limit: Option<f64>| {
         let Some(limit) = limit.filter(|limit| value > *limit) else { return };
-        let factor = if limit > 0.0 { format!(", {:.3} times that", value / limit) } else { String::new() };
+        let factor = if limit > 0.0 { format!(", {} times that", number(value / limit)) } else { String::new() };
         failures.push(format!("{name} is {}, more than {option} {limit}{factor}", number(value)));
     };
     check("RMSE", comparison.rmse, "--max-rmse", options.max_rmse);
