@@ -58,7 +58,10 @@ pub struct HighDynamicRange {
 /// If a picture does not have `width * height` pixels.
 pub fn low_dynamic_range(width: usize, height: usize, image: &[[f32; 3]], reference: &[[f32; 3]]) -> Vec<f32> {
     assert!(image.len() == width * height && reference.len() == width * height);
-    let (image, reference) = (Seen::new(width, height, image), Seen::new(width, height, reference));
+    if image.is_empty() {
+        return Vec::new();
+    }
+    let (image, reference) = (Seen::new(width, image), Seen::new(width, reference));
     let largest = distance(opponent(Vec3::Y), opponent(Vec3::Z)).powf(COLOUR_EXPONENT);
     let pixel = |i: usize| {
         let off = distance(image.colours[i], reference.colours[i]).powf(COLOUR_EXPONENT);
@@ -131,7 +134,7 @@ struct Seen {
 }
 
 impl Seen {
-    fn new(width: usize, height: usize, linear: &[[f32; 3]]) -> Self {
+    fn new(width: usize, linear: &[[f32; 3]]) -> Self {
         // Y Cx Cz: CIELAB without its cube roots, so that a mean of colours is the colour of a mean of light.
         let flat: Vec<Vec3> = linear
             .par_iter()
@@ -166,7 +169,6 @@ impl Seen {
             .par_iter()
             .map(|&[edge_y, edge_x, point_x, point_y]| [edge_x.hypot(edge_y), point_x.hypot(point_y)])
             .collect();
-        debug_assert_eq!(linear.len(), width * height);
         Seen { colours, features }
     }
 }
@@ -223,11 +225,9 @@ fn rows(width: usize, pixels: &[[f32; 4]], taps: &[[f32; 4]]) -> Vec<[f32; 4]> {
     let radius = taps.len() / 2;
     let mut out = vec![[0.0; 4]; pixels.len()];
     out.par_chunks_exact_mut(width).zip(pixels.par_chunks_exact(width)).for_each(|(out, row)| {
-        for (x, out) in out.iter_mut().enumerate() {
-            for (i, tap) in taps.iter().enumerate() {
-                let pixel = row[(x + i).saturating_sub(radius).min(width - 1)];
-                add(out, &pixel, tap);
-            }
+        let padded: Vec<_> = (0..width + 2 * radius).map(|x| row[x.saturating_sub(radius).min(width - 1)]).collect();
+        for (i, tap) in taps.iter().enumerate() {
+            out.iter_mut().zip(&padded[i..]).for_each(|(out, pixel)| add(out, pixel, tap));
         }
     });
     out
@@ -296,7 +296,7 @@ mod tests {
         let (width, height) = SIZE;
         let ldr = |image: &[[f32; 3]], reference: &[[f32; 3]]| low_dynamic_range(width, height, image, reference);
         let map = ldr(&smooth(1.0), &smooth(0.0));
-        agrees(&map, 0.232_154_40, 0.633_613_0, [(5, 3, 0.227_326_9), (30, 20, 0.123_369_1)]);
+        agrees(&map, 0.232_154_40, 0.633_613, [(5, 3, 0.227_326_9), (30, 20, 0.123_369_1)]);
         let map = ldr(&noise(1), &noise(0));
         agrees(&map, 0.389_279_27, 0.960_482_8, [(5, 3, 0.292_325_6), (30, 20, 0.253_814_3)]);
         let mix: Vec<_> =
@@ -316,14 +316,14 @@ mod tests {
             .map(|(a, b)| [0, 1, 2].map(|c| 20.0 * a[c].powi(3) * (0.8 + 0.4 * b[c]) + 0.01))
             .collect();
         let hdr = high_dynamic_range(width, height, &image, &reference);
-        agrees(&hdr.map, 0.057_755_69, 0.180_792_0, [(5, 3, 0.049_203_3), (30, 20, 0.045_657_3)]);
+        agrees(&hdr.map, 0.057_755_69, 0.180_792, [(5, 3, 0.049_203_3), (30, 20, 0.045_657_3)]);
         assert_eq!(hdr.count, 3);
         let (start, stop) = hdr.exposures;
         assert!((start + 3.050_561).abs() < 1e-4 && (stop + 0.816_204).abs() < 1e-4, "{start} {stop}");
 
         let bright = |k| -> Vec<_> { noise(k).iter().map(|p| p.map(|v| 200.0 * v.powi(6))).collect() };
         let hdr = high_dynamic_range(width, height, &bright(1), &bright(0));
-        agrees(&hdr.map, 0.547_975_60, 0.975_901_5, [(5, 3, 0.391_817_0), (30, 20, 0.376_569_3)]);
+        agrees(&hdr.map, 0.547_975_60, 0.975_901_5, [(5, 3, 0.391_817), (30, 20, 0.376_569_3)]);
         assert_eq!(hdr.count, 4);
     }
 
