@@ -1,5 +1,6 @@
 //! Arguments and the manner of speaking: results on stdout, everything else on stderr.
 
+pub mod compare;
 pub mod devices;
 mod estimator;
 pub mod inspect;
@@ -28,6 +29,7 @@ const EXAMPLES: &str = "\
 Examples:
   luminaire render scenes/cornell/cornell.toml
   luminaire render model.obj -o model.png -o model.exr --spp 256
+  luminaire compare model.exr reference.exr
   luminaire inspect model.obj
   luminaire devices
 
@@ -46,6 +48,20 @@ Examples:
 
 ";
 
+const COMPARE_EXAMPLES: &str = "\
+Examples:
+  luminaire compare cornell.exr reference.exr
+      how far they are apart: RMSE, relMSE, bias, FLIP, and the worst pixels
+  luminaire compare cornell.exr reference.exr --heatmap error.png
+      and a picture of where
+  luminaire compare cornell.exr reference.exr --max-relmse 0.01 --max-bias 0.005 && echo good enough
+      as a test: relMSE at most 0.01, and no channel's mean off by more than 0.5 %
+
+Exit codes:
+  0  compared; every limit that was given is kept
+  1  a limit is exceeded, pixels of IMAGE are not finite, or a file cannot be read or written
+  2  wrong usage: an option, or pictures of different sizes";
+
 /// A path tracer on Vulkan: ray queries or a compute-shader BVH, with a double-precision reference.
 #[derive(Debug, clap::Parser)]
 #[command(version, about, after_help = format!("{EXAMPLES}{EXIT_CODES}"), subcommand_required = true)]
@@ -58,6 +74,8 @@ pub struct Args {
 pub enum Command {
     /// Render a scene to PNG, EXR or HDR files.
     Render(RenderOptions),
+    /// Tell how far a picture is from a reference, and whether that is within limits.
+    Compare(CompareOptions),
     /// List every Vulkan device, what it offers, and which backend it would run and why.
     #[command(after_help = "Exit code 0 if at least one device is usable, 1 if none is.")]
     Devices,
@@ -70,6 +88,43 @@ pub enum Command {
 pub struct InspectOptions {
     /// A scene file (.toml) or any OBJ file.
     pub scene: PathBuf,
+}
+
+/// What to compare, and within which limits.
+#[derive(Debug, clap::Args)]
+#[command(after_help = COMPARE_EXAMPLES)]
+pub struct CompareOptions {
+    /// The picture: EXR, PFM, HDR, PNG and most others.
+    pub image: PathBuf,
+    /// What is right, or held to be.
+    pub reference: PathBuf,
+
+    /// Fail above this root-mean-square error, in units of the pictures.
+    #[arg(long, value_name = "X", allow_negative_numbers = true, value_parser = limit, help_heading = "Limits")]
+    pub max_rmse: Option<f64>,
+    /// Fail above this relMSE, the mean of (a - b)^2 / (b^2 + 0.01).
+    #[arg(long, value_name = "X", allow_negative_numbers = true, value_parser = limit, help_heading = "Limits")]
+    pub max_relmse: Option<f64>,
+    /// Fail if the mean of a channel is off by more than this part of the reference's; 0.01 is 1 %.
+    #[arg(long, value_name = "X", allow_negative_numbers = true, value_parser = limit, help_heading = "Limits")]
+    pub max_bias: Option<f64>,
+    /// Fail above this mean FLIP, from 0 (they look the same) to 1.
+    #[arg(long, value_name = "X", allow_negative_numbers = true, value_parser = limit, help_heading = "Limits")]
+    pub max_flip: Option<f64>,
+
+    /// Take FLIP as the pictures look in a PNG of this exposure [default: over all exposures that show something; 0 if a picture holds
+    /// whole numbers].
+    #[arg(long, value_name = "STOPS", allow_negative_numbers = true, value_parser = stops)]
+    pub exposure: Option<f32>,
+    /// How many of the worst pixels to list.
+    #[arg(long, value_name = "N", default_value_t = 5, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(..=100_000), help_heading = "Output")]
+    pub worst: u32,
+    /// Write a picture of the relative error of every pixel, with its scale.
+    #[arg(long, value_name = "FILE.png", help_heading = "Output")]
+    pub heatmap: Option<PathBuf>,
+    /// Write the figures to a JSON file.
+    #[arg(long, value_name = "FILE.json", help_heading = "Output")]
+    pub stats: Option<PathBuf>,
 }
 
 /// What to render, and how.
@@ -180,6 +235,13 @@ fn pixel(text: &str) -> Result<[u32; 2], String> {
     match text.split_once(',').map(|(x, y)| (number(x), number(y))) {
         Some((Some(x), Some(y))) => Ok([x, y]),
         _ => Err("expected column and row of a pixel, counted from 0 at the upper left, for example 12,40".into()),
+    }
+}
+
+fn limit(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(limit) if limit >= 0.0 && limit.is_finite() => Ok(limit),
+        _ => Err("expected a number from 0, for example 0.01".into()),
     }
 }
 

@@ -5,10 +5,11 @@ use super::stats::{Seconds, Stats};
 use super::{RenderOptions, print, tell};
 use luminaire::backend::{self, Backend, Opened, Request};
 use luminaire::film::Film;
+use luminaire::measure::heat_map;
 use luminaire::render::{End, Limits, Rendered, render};
 use luminaire::scene::{self, FilmSettings, Scene};
 use luminaire::{Error, Result, image_io};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
@@ -120,7 +121,7 @@ fn finish(
     WRITING.store(false, Ordering::SeqCst);
     done?;
     if !options.quiet {
-        print(&summary(&rendered, seconds, written, options.stats.as_deref()))?;
+        print(&summary(options, &rendered, seconds, written))?;
     }
     match rendered.end {
         End::Samples | End::Time | End::Noise => Ok(ExitCode::SUCCESS),
@@ -155,6 +156,11 @@ fn write(
     let saved: Vec<_> =
         written.iter().map(|path| image_io::save(path, &rendered.film, scene.settings.exposure)).collect();
     saved.into_iter().collect::<Result<()>>()?;
+    if let (Some(path), Some(errors)) = (&options.error_map, rendered.film.error_map()) {
+        let FilmSettings { width, height, .. } = scene.film;
+        let [low, high] = heat_map::RELATIVE_ERRORS;
+        image_io::save_png(path, &heat_map::heat_map(width, height, &errors.relative, low, high))?;
+    }
     seconds.write = start.elapsed().as_secs_f64();
     if let Some(path) = &options.stats {
         let stats = Stats::new(scene, opened, rendered, *seconds, written);
@@ -165,7 +171,8 @@ fn write(
 }
 
 /// Where the files are, how long it took, and how fast it was.
-fn summary(rendered: &Rendered, seconds: Seconds, written: &[PathBuf], stats: Option<&Path>) -> String {
+fn summary(options: &RenderOptions, rendered: &Rendered, seconds: Seconds, written: &[PathBuf]) -> String {
+    let progress = &rendered.progress;
     let film = &rendered.film;
     let (least, most) = (film.least_samples(), film.most_samples());
     let spp = if least == most { least.to_string() } else { format!("{least} to {most}") };
@@ -178,10 +185,13 @@ fn summary(rendered: &Rendered, seconds: Seconds, written: &[PathBuf], stats: Op
     for path in written {
         text += &format!("{}: {} x {} pixels, {spp} samples a pixel{ended}\n", path.display(), film.width, film.height);
     }
-    if let Some(path) = stats {
+    if let Some(path) = options.error_map.as_ref().filter(|_| progress.error.is_some()) {
+        text +=
+            &format!("{}: estimated relative error of every pixel, 0.1 % (black) to 100 % (white)\n", path.display());
+    }
+    if let Some(path) = &options.stats {
         text += &format!("{}: the figures of this run\n", path.display());
     }
-    let progress = &rendered.progress;
     if let Some(error) = progress.error {
         text += &format!("estimated error {} (RMSE {:.3e})", percent(error.relative()), error.rmse);
         text += &match error.fireflies {
@@ -225,6 +235,12 @@ fn outputs(options: &RenderOptions) -> Result<Vec<PathBuf>> {
             return Err(Error::Usage(format!("-o {} is given twice", path.display())));
         }
         image_io::check_output(path)?;
+    }
+    if let Some(path) = &options.error_map {
+        if image_io::Format::of(path)? != image_io::Format::Png {
+            return Err(Error::Usage(format!("--error-map {}: the name must end in .png", path.display())));
+        }
+        image_io::check_writable(path)?;
     }
     if let Some(path) = &options.stats {
         if path.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("json")) {

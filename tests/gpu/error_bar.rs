@@ -18,7 +18,8 @@ fn overflowing(size: u32) -> Scene {
         matte(Vec3::splat(0.5)),
         Affine3A::IDENTITY,
     );
-    scene.luminaires.push(Luminaire::Point { position: Vec3::new(0.0, -0.9375, -3.0), intensity: Vec3::splat(1e38) });
+    scene.sensor = pinhole(Vec3::ZERO, Vec3::new(0.0, -1.0, -3.0), Vec3::Y, 15.0);
+    scene.luminaires.push(Luminaire::Point { position: Vec3::new(0.0, -0.75, -3.0), intensity: Vec3::splat(3e38) });
     estimator(&mut scene).max_bounces = Some(0);
     scene
 }
