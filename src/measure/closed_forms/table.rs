@@ -180,34 +180,35 @@ impl Table {
         text
     }
 
-    /// Every `z` in the order of the table, between the bounds of one value and of the whole family (1 in 20).
+    /// Every `z`, sorted, over what is expected of a normal variable of that rank: without any error but chance the points lie on the diagonal.
+    /// With the bounds of one value (1 in 22) and of the whole family (1 in 20).
     pub fn chart(&self) -> Chart {
+        let normal = Normal::standard();
+        let point = |x: f64, y: f64| Point { x, y, error: None };
         let rows: Vec<&Row> = self.rows.iter().filter(|row| row.by_chance()).collect();
-        let point = |x: usize, y: f64| Point { x: x as f64, y, error: None };
-        let mut series: Vec<Series> = self
-            .backends
-            .iter()
-            .enumerate()
-            .map(|(index, backend)| Series {
-                name: name(*backend).into(),
-                points: rows.iter().enumerate().map(|(x, row)| point(x + 1, row.z(index))).collect(),
-            })
-            .collect();
+        let rank = |i: usize| normal.inverse_cdf((i as f64 + 0.5) / rows.len() as f64);
+        let end = rank(0).abs();
+        let mut series = vec![Series { name: "chance alone".into(), points: vec![point(-end, -end), point(end, end)] }];
+        for (index, backend) in self.backends.iter().enumerate() {
+            let mut all: Vec<f64> = rows.iter().map(|row| row.z(index)).collect();
+            all.sort_by(f64::total_cmp);
+            let points = all.into_iter().enumerate().map(|(i, z)| point(rank(i), z)).collect();
+            series.push(Series { name: name(*backend).into(), points });
+        }
         let count = rows.len() * self.backends.len();
         // Of so many values the largest stays below this in 19 of 20 right programs.
-        let one = -f64::exp_m1((-0.05f64).ln_1p() / count.max(1) as f64);
-        let family = Normal::standard().inverse_cdf(1.0 - 0.5 * one);
-        for (name, bound) in [("2 standard errors", 2.0), ("1 in 20 for the largest of all", family)] {
-            for sign in [1.0, -1.0] {
-                let name = format!("{}{name}", if sign > 0.0 { "+ " } else { "- " });
-                let points = vec![point(0, sign * bound), point(rows.len() + 1, sign * bound)];
-                series.push(Series { name, points });
+        let one = -f64::exp_m1(f64::ln_1p(-0.05) / count.max(1) as f64);
+        let family = normal.inverse_cdf(1.0 - 0.5 * one);
+        for (bound, meaning) in [(2.0, ""), (family, ": any beyond, 1 in 20")] {
+            for bound in [bound, -bound] {
+                let points = vec![point(-end, bound), point(end, bound)];
+                series.push(Series { name: format!("{bound:+.1}{meaning}"), points });
             }
         }
         Chart {
             name: "closed-forms".into(),
             title: "Closed forms: deviation over standard error".into(),
-            x: Axis::linear("case, in the order of the table"),
+            x: Axis::linear("z of the same rank that chance alone is expected to give"),
             y: Axis::linear("z"),
             series,
         }
