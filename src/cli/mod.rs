@@ -8,6 +8,7 @@ mod inspect_tables;
 mod progress;
 pub mod render;
 mod replay;
+pub mod stability;
 mod stats;
 #[cfg(feature = "shaderc")]
 mod watch;
@@ -62,6 +63,14 @@ Exit codes:
   1  a limit is exceeded, pixels of IMAGE are not finite, or a file cannot be read or written
   2  wrong usage: an option, or pictures of different sizes";
 
+const STABILITY_HELP: &str = "\
+Examples:
+  luminaire stability --list
+  luminaire stability samples albedo
+  luminaire stability --out docs/stability --page docs/stability.md
+
+Without a Vulkan device the reference runs alone. Exit code 1 if a sweep failed; the others are written nevertheless.";
+
 /// A path tracer on Vulkan: ray queries or a compute-shader BVH, with a double-precision reference.
 #[derive(Debug, clap::Parser)]
 #[command(version, about, after_help = format!("{EXAMPLES}{EXIT_CODES}"), subcommand_required = true)]
@@ -81,6 +90,29 @@ pub enum Command {
     Devices,
     /// Show what was loaded from a scene, and every warning.
     Inspect(InspectOptions),
+    /// Run methods over the ranges in which they can fail, on every backend here: charts, numbers, and a page.
+    Stability(StabilityOptions),
+}
+
+/// Which sweeps to run, and where their files go.
+#[derive(Debug, clap::Args)]
+#[command(after_help = STABILITY_HELP)]
+pub struct StabilityOptions {
+    /// Names of sweeps, as `--list` tells them [default: all].
+    #[arg(value_name = "SWEEP")]
+    pub sweeps: Vec<String>,
+    /// The folder for <SWEEP>.csv and <SWEEP>-<CHART>.svg; it is made if it is missing [default: stability].
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// The page that shows and explains the charts, in Markdown [default: README.md in the folder].
+    #[arg(long, value_name = "FILE")]
+    pub page: Option<PathBuf>,
+    /// Finer steps and more samples: about ten times as long.
+    #[arg(long)]
+    pub long: bool,
+    /// List the sweeps, and run none.
+    #[arg(long)]
+    pub list: bool,
 }
 
 /// What to inspect.

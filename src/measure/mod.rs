@@ -3,6 +3,7 @@
 
 pub mod calibration;
 pub mod chart;
+pub mod closed_forms;
 pub mod flip;
 pub mod heat_map;
 pub mod metrics;
