@@ -211,9 +211,9 @@ mod tests {
     /// A film of 9 x 2 pixels with values from 0 to 1e5, two samples each.
     fn film() -> Film {
         let mut film = Film::new(9, 2).unwrap();
-        for (pixel, sum) in film.sum.iter_mut().enumerate() {
+        for (pixel, sums) in film.sums.iter_mut().enumerate() {
             let v = 10f64.powi(pixel as i32 - 12);
-            *sum = [2.0 * v, 4.0 * v, 0.0];
+            sums[1] = [2.0 * v, 4.0 * v, 0.0];
         }
         film.samples.fill(2);
         film
@@ -252,12 +252,12 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.hdr");
         let mut film = Film::new(50, 40).unwrap();
-        for (i, sum) in film.sum.iter_mut().enumerate() {
+        for (i, sums) in film.sums.iter_mut().enumerate() {
             let v = 0.25 * 1.000_7f64.powi(i as i32);
-            *sum = [v, 0.3 * v, 0.05 * v];
+            sums[0] = [v, 0.3 * v, 0.05 * v];
         }
         // Rounded up to the next power of two.
-        film.sum[7] = [0.999, 0.5, 0.003_8];
+        film.sums[7][0] = [0.999, 0.5, 0.003_8];
         film.samples.fill(1);
         save(&path, &film, 0.0).unwrap();
         let (got, expected) = (read(&path), film.to_linear());
@@ -279,7 +279,9 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.png");
         let mut film = Film::new(3, 1).unwrap();
-        film.sum = vec![[0.0, 0.001, 0.05], [0.107, 0.25, 0.5], [1.0, 7.0, -1.0]];
+        for (sums, value) in film.sums.iter_mut().zip([[0.0, 0.001, 0.05], [0.107, 0.25, 0.5], [1.0, 7.0, -1.0]]) {
+            sums[0] = value;
+        }
         film.samples.fill(1);
         save(&path, &film, 1.0).unwrap();
         // Twice the values; the expected ones are the standard's formula worked out by hand.

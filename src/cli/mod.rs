@@ -7,6 +7,7 @@ pub mod inspect;
 mod inspect_tables;
 mod progress;
 pub mod render;
+mod replay;
 mod stats;
 #[cfg(feature = "shaderc")]
 mod watch;
@@ -42,6 +43,8 @@ Examples:
       two files of one render; the height follows from the scene's aspect ratio
   luminaire render model.obj --time 30 --backend compute-bvh --stats run.json
       as many samples as 30 seconds allow, and the figures of the run
+  luminaire render model.obj --noise 0.02 --time 600 --error-map noise.png
+      until the estimated error is 2 %, but no longer than ten minutes; and where it is how large
 
 ";
 
@@ -137,6 +140,9 @@ pub struct RenderOptions {
     /// Exposure of a PNG in stops: radiance times 2^STOPS [default: the scene's].
     #[arg(long, value_name = "STOPS", allow_negative_numbers = true, value_parser = stops, help_heading = "Output")]
     pub exposure: Option<f32>,
+    /// Write a heat map of the estimated relative error of every pixel.
+    #[arg(long, value_name = "FILE.png", help_heading = "Output")]
+    pub error_map: Option<PathBuf>,
     /// Write the figures of the run to a JSON file.
     #[arg(long, value_name = "FILE.json", help_heading = "Output")]
     pub stats: Option<PathBuf>,
@@ -144,12 +150,16 @@ pub struct RenderOptions {
     #[arg(long, help_heading = "Output")]
     pub quiet: bool,
 
-    /// Samples a pixel [default: the scene's, unless there is --time].
+    /// Samples a pixel [default: the scene's, unless there is --time or --noise].
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..), help_heading = "Quality")]
     pub spp: Option<u32>,
     /// Stop rendering after so many seconds; with --spp, whichever comes first.
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = seconds, help_heading = "Quality")]
     pub time: Option<f64>,
+    /// Stop when the estimated relative error (the root of relMSE) is below E, for example 0.02; with --spp and --time, whichever
+    /// comes first.
+    #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = noise, help_heading = "Quality")]
+    pub noise: Option<f64>,
     /// Width in pixels [default: the scene's, or from --height at the scene's aspect ratio].
     #[arg(long, value_name = "PIXELS", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=65536), help_heading = "Quality")]
     pub width: Option<u32>,
@@ -161,6 +171,13 @@ pub struct RenderOptions {
     pub seed: Option<u32>,
     #[command(flatten)]
     pub estimator: estimator::EstimatorOptions,
+
+    /// Trace one sample of one pixel again and print its path, instead of rendering; with --sample.
+    #[arg(long, value_name = "X,Y", value_parser = pixel, requires = "sample", help_heading = "Replay")]
+    pub pixel: Option<[u32; 2]>,
+    /// The number of the sample that --pixel traces.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..i64::from(u32::MAX)), requires = "pixel", help_heading = "Replay")]
+    pub sample: Option<u32>,
 
     /// Render again whenever a shader changes (the sources are in LUMINAIRE_SHADERS, or where the program was built).
     #[cfg(feature = "shaderc")]
@@ -210,6 +227,21 @@ fn limit(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(limit) if limit >= 0.0 && limit.is_finite() => Ok(limit),
         _ => Err("expected a number from 0, for example 0.01".into()),
+    }
+}
+
+fn noise(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(noise) if noise > 0.0 && noise.is_finite() => Ok(noise),
+        _ => Err("expected a relative error above 0, for example 0.02 for 2 %".into()),
+    }
+}
+
+fn pixel(text: &str) -> Result<[u32; 2], String> {
+    let number = |text: &str| text.trim().parse::<u32>().ok();
+    match text.split_once(',').map(|(x, y)| (number(x), number(y))) {
+        Some((Some(x), Some(y))) => Ok([x, y]),
+        _ => Err("expected column and row of a pixel, counted from 0 at the upper left, for example 12,40".into()),
     }
 }
 
@@ -268,6 +300,10 @@ mod tests {
             ["--time", "0"],
             ["--time", "nan"],
             ["--time", "inf"],
+            ["--noise", "0"],
+            ["--noise", "nan"],
+            ["--pixel", "1"],
+            ["--pixel", "1,-1"],
             ["--width", "0"],
             ["--height", "65537"],
             ["--seed", "-1"],

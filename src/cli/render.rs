@@ -1,6 +1,6 @@
 //! `luminaire render`.
 
-use super::progress::{Reporter, duration};
+use super::progress::{Reporter, duration, percent};
 use super::stats::{Seconds, Stats};
 use super::{RenderOptions, print, tell};
 use luminaire::backend::{self, Backend, Opened, Request};
@@ -33,7 +33,7 @@ pub fn run(options: &RenderOptions) -> Result<ExitCode> {
         }
     };
     check_combinations(options)?;
-    let outputs = outputs(options)?;
+    let outputs = if options.pixel.is_some() { vec![] } else { outputs(options)? };
     listen_for_interrupts(options.quiet)?;
 
     let mut seconds = Seconds::default();
@@ -45,6 +45,10 @@ pub fn run(options: &RenderOptions) -> Result<ExitCode> {
     scene.settings.seed = options.seed.unwrap_or(scene.settings.seed);
     scene.settings.exposure = options.exposure.unwrap_or(scene.settings.exposure);
     Film::check_size(scene.film.width, scene.film.height)?;
+    let FilmSettings { width, height, .. } = scene.film;
+    if let Some([x, y]) = options.pixel.filter(|[x, y]| *x >= width || *y >= height) {
+        return Err(Error::Usage(format!("--pixel {x},{y} is not on the film, which has {width} x {height} pixels")));
+    }
     scene.warnings.iter().for_each(|warning| say(&format!("warning: {warning}")));
 
     #[cfg(feature = "shaderc")]
@@ -71,8 +75,12 @@ fn trace(
     let driver = if opened.driver.is_empty() { String::new() } else { format!(", {}", opened.driver) };
     say(&format!("{notice}{} on {}{driver}: {}", opened.backend, opened.device, opened.why));
 
-    let scene_spp = options.time.is_none().then_some(scene.settings.spp);
-    let limits = Limits { spp: options.spp.or(scene_spp), seconds: options.time };
+    if let (Some(pixel), Some(sample)) = (options.pixel, options.sample) {
+        return super::replay::run(scene, &mut opened, pixel, sample);
+    }
+    let other_limit = options.time.is_some() || options.noise.is_some();
+    let scene_spp = (!other_limit).then_some(scene.settings.spp);
+    let limits = Limits { spp: options.spp.or(scene_spp), seconds: options.time, noise: options.noise };
     let mut reporter = Reporter::new(options.quiet);
     RENDERING.store(true, Ordering::SeqCst);
     let size = (scene.film.width, scene.film.height);
@@ -93,8 +101,14 @@ fn finish(
     outputs: &[PathBuf],
     say: &dyn Fn(&str),
 ) -> Result<ExitCode> {
-    if rendered.non_finite > 0 {
-        say(&format!("warning: {} samples were not finite and count as black", rendered.non_finite));
+    if let Some(first) = rendered.dropped_samples.first() {
+        say(&format!(
+            "warning: {} samples were not finite and are left out; the first is replayed by --pixel {},{} --sample {}",
+            rendered.dropped,
+            first.pixel % scene.film.width,
+            first.pixel / scene.film.width,
+            first.sample
+        ));
     }
     let written = if rendered.progress.samples > 0 { outputs } else { &[] };
     let black = rendered.film.samples.iter().filter(|samples| **samples == 0).count();
@@ -109,7 +123,7 @@ fn finish(
         print(&summary(&rendered, seconds, written, options.stats.as_deref()))?;
     }
     match rendered.end {
-        End::Samples | End::Time => Ok(ExitCode::SUCCESS),
+        End::Samples | End::Time | End::Noise => Ok(ExitCode::SUCCESS),
         End::Stopped => {
             say(if written.is_empty() {
                 "interrupted before the first sample; no picture is written"
@@ -155,14 +169,27 @@ fn summary(rendered: &Rendered, seconds: Seconds, written: &[PathBuf], stats: Op
     let film = &rendered.film;
     let (least, most) = (film.least_samples(), film.most_samples());
     let spp = if least == most { least.to_string() } else { format!("{least} to {most}") };
+    let ended = match rendered.end {
+        End::Time => ", ended by --time",
+        End::Noise => ", ended by --noise",
+        End::Samples | End::Stopped | End::Failed(_) => "",
+    };
     let mut text = String::new();
     for path in written {
-        text += &format!("{}: {} x {} pixels, {spp} samples a pixel\n", path.display(), film.width, film.height);
+        text += &format!("{}: {} x {} pixels, {spp} samples a pixel{ended}\n", path.display(), film.width, film.height);
     }
     if let Some(path) = stats {
         text += &format!("{}: the figures of this run\n", path.display());
     }
     let progress = &rendered.progress;
+    if let Some(error) = progress.error {
+        text += &format!("estimated error {} (RMSE {:.3e})", percent(error.relative()), error.rmse);
+        text += &match error.fireflies {
+            0 => "\n".into(),
+            1 => ", without 1 pixel that is a firefly or a very small lamp\n".into(),
+            n => format!(", without {n} pixels that are fireflies or very small lamps\n"),
+        };
+    }
     text += &format!(
         "load {}, build {}, render {}; {:.2} Mrays/s, {:.3} million samples/s\n",
         duration(seconds.load),
