@@ -1,10 +1,8 @@
 //! How far a picture is from a reference, in numbers.
 
+use crate::film::REL_MSE_FLOOR;
 use crate::image_io::Picture;
 use crate::{Error, Result};
-
-/// What relative squared errors are saved from dividing by: `(a - b)^2 / (b^2 + 0.01)`, here and in every table of the project.
-pub const RELATIVE_FLOOR: f64 = 0.01;
 
 /// Where the standard error of a bias comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
@@ -160,7 +158,7 @@ pub fn finite(pixel: &[f32; 3]) -> bool {
 fn relative_square(a: &[f32; 3], b: &[f32; 3]) -> f64 {
     let square = |(a, b): (&f32, &f32)| {
         let (a, b) = (f64::from(*a), f64::from(*b));
-        (a - b).powi(2) / (b * b + RELATIVE_FLOOR)
+        (a - b).powi(2) / (b * b + REL_MSE_FLOOR)
     };
     a.iter().zip(b).map(square).sum()
 }
