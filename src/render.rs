@@ -1,6 +1,6 @@
 //! The progressive loop: batches, limits (samples, time, noise), progress, cancellation.
 //!
-//! Samples are summed in groups of one part each ([`PARTS`](crate::sampling::PARTS)), whose bounds depend on the sample's index alone:
+//! Samples are summed in groups of one part each ([`PARTS`]), whose bounds depend on the sample's index alone:
 //! within a part 0, 1, 2, 4, 8, 16, then every 16. A batch is one tile and some whole groups of every part, as many as a device does in the time it
 //! asks for. How the work was cut into batches therefore never shows in the picture: the same groups are added in the same order, to
 //! the last bit. (A limit of the noise may cut a group in two, which changes the rounding of its sum.)

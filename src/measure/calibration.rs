@@ -76,17 +76,17 @@ pub fn calibrate(
             let errors = film.error_map().expect("several samples a pixel");
             let (mut square, mut relative, mut all_relative) = (0.0, 0.0, 0.0);
             for pixel in 0..film.pixels() {
-                let (found, expected) = (film.mean(pixel), truth.mean(pixel));
-                for channel in 0..3 {
-                    let own = f64::from(truth_error[pixel][channel]).powi(2);
-                    let off = (found[channel] - expected[channel]).powi(2);
-                    let scale = expected[channel].powi(2) + REL_MSE_FLOOR;
+                let pairs = std::iter::zip(film.mean(pixel), truth.mean(pixel));
+                let variances = std::iter::zip(errors.standard_error[pixel], truth_error[pixel]);
+                for ((found, expected), (estimated, own)) in pairs.zip(variances) {
+                    let [estimated, own] = [estimated, own].map(|error| f64::from(error).powi(2));
+                    let off = (found - expected).powi(2);
+                    let scale = expected.powi(2) + REL_MSE_FLOOR;
                     all_relative += (off - own) / scale;
                     if !errors.firefly[pixel] {
                         square += off - own;
                         relative += (off - own) / scale;
-                        let variance = f64::from(errors.standard_error[pixel][channel]).powi(2) + own;
-                        covered += u64::from(off <= 1.96 * 1.96 * variance);
+                        covered += u64::from(off <= 1.96 * 1.96 * (estimated + own));
                         values += 1;
                     }
                 }
