@@ -5,6 +5,7 @@
 //! It is run from the repository's root (`make accuracy`), for the scenes. The charts go into the folder `images` beside FILE, `docs/accuracy.md`
 //! unless it is said. `--long` takes about ten times as long.
 
+mod calibration;
 mod closed_forms;
 mod estimators;
 mod kernel;
@@ -40,6 +41,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         ("setting", if long { " (`LONG=1`)" } else { "" }.into()),
     ]);
     closed_forms::measure(&bench, &images, &mut texts)?;
+    calibration::measure(&bench, &images, &mut texts)?;
     kernel::measure(&bench, &mut texts)?;
     estimators::measure(&bench, &mut texts)?;
     let page = fill(TEMPLATE, &texts)?;

@@ -3,7 +3,7 @@
 use super::*;
 use crate::common::scenes::*;
 use glam::{Affine3A, Vec3};
-use luminaire::film::{Batch, SampleId, Tile};
+use luminaire::film::{Batch, Tile};
 use luminaire::render::{End, Limits, Tracer, render};
 use luminaire::scene::{Luminaire, Scene};
 use std::sync::atomic::AtomicBool;
@@ -33,15 +33,19 @@ fn samples_that_are_not_finite_are_dropped_and_named() {
     let count = |sums: &[luminaire::film::PixelSum]| sums.iter().map(|s| s.dropped).sum::<u32>();
     assert!(count(&expected.sums) > 20 && expected.dropped.len() == count(&expected.sums) as usize);
     on_every_backend(|backend| {
-        let traced = backend.tracer(&scene).trace(&batch).expect("the tracer works");
-        // Samples at the very border of f32 may fall either way.
-        assert!(count(&traced.sums).abs_diff(count(&expected.sums)) <= 2, "{}", backend.name());
+        let mut tracer = backend.tracer(&scene);
+        let traced = tracer.trace(&batch).expect("the tracer works");
+        // Here the irradiance is too large already, before the albedo makes the radiance smaller.
+        assert!(count(&traced.sums) >= count(&expected.sums), "{}", backend.name());
         assert!(traced.sums.iter().all(|s| s.radiance.iter().all(|v| v.is_finite())));
         assert_eq!(traced.dropped.len(), 15, "as many as there is room for");
         assert!(traced.dropped.is_sorted());
-        for SampleId { pixel, sample } in &traced.dropped {
-            let found = expected.dropped.contains(&SampleId { pixel: *pixel, sample: *sample });
-            assert!(found, "{}: pixel {pixel}, sample {sample} is finite in the reference", backend.name());
+        // By its name a sample is found again.
+        for id in &traced.dropped {
+            let tile = Tile { x: id.pixel % 32, y: id.pixel / 32, width: 1, height: 1 };
+            let samples = id.sample..id.sample + 1;
+            let alone = tracer.trace(&Batch { tile, samples, group: 1 }).expect("the tracer works");
+            assert_eq!(alone.dropped, [*id]);
         }
     });
 }
