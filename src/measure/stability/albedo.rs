@@ -2,7 +2,7 @@
 
 use super::rooms::{furnace, furnace_radiance, without_roulette};
 use super::trial::Trial;
-use super::words::{count, share};
+use super::words::{count, deviation, share};
 use super::{Definition, Findings, Sweep};
 use crate::Result;
 use crate::backend::Backend;
@@ -22,7 +22,7 @@ pub const DEFINITION: Definition = Definition {
 const THRESHOLD: f32 = 1e-4;
 const BOUNCES: u32 = 16;
 /// Picture of the room: small, because it looks the same everywhere.
-const SIZE: (u32, u32) = (4, 4);
+const SIZE: (u32, u32) = (8, 2);
 
 struct Steps {
     /// One minus the albedo.
@@ -54,6 +54,13 @@ struct Termination {
     name: &'static str,
     estimator: Estimator,
     rays: fn(absorbed: f64) -> f64,
+}
+
+impl Termination {
+    /// Whether all paths are the same, so that two of a pixel tell all.
+    fn is_even(&self) -> bool {
+        self.estimator.extinction == Extinction::Off
+    }
 }
 
 fn terminations() -> [Termination; 5] {
@@ -104,7 +111,8 @@ fn measure(
     scene.settings.seed = 17;
     let mut tracer = bench.tracer(&scene, backend)?;
     let samples = (all / each / 16.0).clamp(2.0, 8192.0) as u32;
-    let trial = Trial::new(tracer.as_mut(), SIZE, samples, each)?;
+    let group = (samples / 8).clamp(1, 8);
+    let trial = Trial::grouped(tracer.as_mut(), SIZE, (samples / group, group), each)?;
     let (mean, truth) = (trial.mean(), furnace_radiance(albedo));
     let rays = trial.rays_a_sample();
     Ok(Measured {
@@ -146,7 +154,10 @@ fn sweep(bench: &Workbench, steps: &Steps) -> Result<Sweep> {
             let points: Result<Vec<Measured>> = steps
                 .absorbed
                 .iter()
-                .map(|a| measure(bench, backend, termination.estimator, *a, [steps.rays, (termination.rays)(*a)]))
+                .map(|a| {
+                    let all = if termination.is_even() { 0.0 } else { steps.rays };
+                    measure(bench, backend, termination.estimator, *a, [all, (termination.rays)(*a)])
+                })
                 .collect();
             let points = points?;
             bias.series.push(series(termination.name, &points, ratio));
@@ -184,10 +195,7 @@ fn findings(all: &[(Backend, Vec<Vec<Measured>>)], beyond: &[Measured]) -> Findi
         let ends = all.iter().filter_map(|(_, of)| of[termination].last());
         ends.max_by(|a, b| (a.ratio - 1.0).abs().total_cmp(&(b.ratio - 1.0).abs()))
     };
-    let bias = |termination: usize| {
-        worst(termination)
-            .map_or(String::new(), |m| format!("{:+.1} % +- {:.1} %", 100.0 * (m.ratio - 1.0), 200.0 * m.error))
-    };
+    let bias = |termination: usize| worst(termination).map_or(String::new(), |m| deviation(m.ratio - 1.0, m.error));
     let first_off = |termination: usize| {
         let off = |m: &&Measured| (m.ratio - 1.0).abs() > 0.01 + 3.0 * m.error;
         all.iter().filter_map(|(_, of)| of[termination].iter().find(off)).map(|m| 1.0 - 1.0 / m.x).reduce(f64::min)
@@ -201,12 +209,21 @@ fn findings(all: &[(Backend, Vec<Vec<Measured>>)], beyond: &[Measured]) -> Findi
     let reference = &all[0].1;
     let rays = |termination: usize| reference[termination].last().map_or(String::new(), |m| count(m.rays));
     let top = reference[0].last().map_or(0.0, |m| 1.0 - 1.0 / m.x);
-    let beyond_error = beyond.iter().map(|m| m.error / m.ratio).fold(0.0, f64::max);
+    // What f32 makes of a product of as many factors as the longest paths have: all paths are the same there.
+    let ends = all.iter().filter_map(|(_, of)| of[3].last()).map(|m| m.ratio);
+    let rounding = ends.map(|ratio| (ratio - all[0].1[3].last().map_or(ratio, |m| m.ratio)).abs()).fold(0.0, f64::max);
+    let rounding = match all.len() {
+        1 => String::new(),
+        _ => format!(", and in f32 the product of so many factors is {} off", share(rounding)),
+    };
+    let beyond: Vec<_> = beyond.iter().filter(|m| 1.0 - 1.0 / m.x > MAX_SURVIVAL.sqrt()).collect();
+    let beyond_error = beyond.iter().map(|m| 2.0 * m.error / m.ratio).fold(0.0, f64::max);
     let lowest = beyond.iter().map(|m| m.ratio).fold(f64::INFINITY, f64::min);
     let highest = beyond.iter().map(|m| m.ratio).fold(0.0, f64::max);
     Findings {
         starts: format!(
-            "More than 1 % off: at most {BOUNCES} bounces {} ({} at {top:.4}); literal extinction {} ({}); threshold 1e-4 {} ({}); roulette by \
+            "More than 1 % off: at most {BOUNCES} bounces {} ({} at {top:.4}); literal extinction {} ({}); threshold 1e-4 {} ({}); \
+             roulette by \
              surface {} and by throughput {} (never more than {sigma:.1} standard errors off).",
             from(4),
             bias(4),
@@ -218,10 +235,15 @@ fn findings(all: &[(Backend, Vec<Vec<Measured>>)], beyond: &[Measured]) -> Findi
             from(0),
         ),
         how: format!(
-            "A path in a closed room has 1 / (1 - albedo) surfaces in the mean. A limit of k bounces leaves 1 - a^(k+2) of the light; literal \
-             extinction counts every loss twice and leaves 1 / (1 + a); a threshold t leaves 1 - t, but its paths are {} rays long at albedo \
-             {top:.4} where roulette needs {}. Beyond albedo {MAX_SURVIVAL} roulette stops at that survival and survivors grow heavier, bounce \
-             by bounce: above {:.5} the variance is infinite. Measured there: {} to {} of the truth, with error bars that say {} and cannot be trusted.",
+            "A path in a closed room has 1 / (1 - albedo) surfaces in the mean. A limit of k bounces leaves 1 - a^(k+2) of the light; \
+             literal \
+             extinction counts every loss twice and leaves 1 / (1 + a); a threshold t leaves 1 - t, but its paths are {} rays long at \
+             albedo \
+             {top:.4} where roulette needs {}{rounding}. Beyond albedo {MAX_SURVIVAL} roulette stops at that survival and survivors \
+             grow heavier, \
+             bounce by bounce: above {:.5} the variance is infinite. Measured there: {} to {} of the truth, with error bars that say at \
+             most {} \
+             of the mean and cannot be trusted.",
             rays(3),
             rays(0),
             MAX_SURVIVAL.sqrt(),
@@ -230,13 +252,16 @@ fn findings(all: &[(Backend, Vec<Vec<Measured>>)], beyond: &[Measured]) -> Findi
             share(beyond_error),
         ),
         mends: format!(
-            "Roulette by throughput is the default: no bias, and paths as long as the light lives ({} rays at {top:.4}). No surface survives with more than \
+            "Roulette by throughput is the default: no bias, and paths as long as the light lives ({} rays at {top:.4}). No surface \
+             survives with more than \
              {MAX_SURVIVAL}, so that paths end even in a room that absorbs nothing. Limits and thresholds are off unless asked for.",
             rays(0),
         ),
         sees: format!(
-            "With the default noise and time that grow with 1 / (1 - albedo) and a right picture. With a limit of bounces or the literal extinction a \
-             picture that is too dark and looks converged. Above albedo {:.5} a few glaring pixels and all others too dark; real matter stays below 0.99.",
+            "With the default noise and time that grow with 1 / (1 - albedo) and a right picture. With a limit of bounces or the \
+             literal extinction a \
+             picture that is too dark and looks converged. Above albedo {:.5} a few glaring pixels and all others too dark; real matter \
+             stays below 0.99.",
             MAX_SURVIVAL.sqrt(),
         ),
     }

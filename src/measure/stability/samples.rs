@@ -55,29 +55,35 @@ fn sweep(bench: &Workbench, numbers: &[u32], most_rendered: u32) -> Result<Sweep
     let worst_render = rendered.series.iter().map(largest).fold(0.0, f64::max);
     let findings = Findings {
         starts: format!(
-            "More than {} off: a plain f32 sum {} of a constant and {} of random radiances; a compensated f32 sum {}; luminaire {}",
+            "More than {} off: a plain f32 sum {} for a constant, {} for random radiances; a compensated f32 sum {}; luminaire {}.",
             share(VISIBLE),
             from(plain),
             from(&random.series[0]),
             from(compensated),
             from(ours),
-        ) + ".",
+        ),
         how: format!(
-            "Each addition is rounded to the 24 bits of the sum so far. Equal summands are rounded the same way again and again, so the error \
-             grows with their number ({} at {} samples), and near 2^24 summands the sum stands still. Random ones stay better, {} at the end.",
+            "Each addition is rounded to the 24 bits of the sum so far. Equal summands are rounded the same way again and again, so the \
+             error \
+             grows with their number ({} at {} samples), and near 2^24 summands the sum stands still; a compensated sum goes the same \
+             way when the sum of what was lost has become large. Random ones stay better, {} at the end.",
             share(last(plain)),
             plain.points.last().map_or(String::new(), |p| count(p.x)),
             share(last(&random.series[0])),
         ),
         mends: format!(
-            "The kernel adds at most 16 samples in f32 and the film adds these sums in f64: at most {} off here, {} for random radiances, and {} \
-             in a real picture of a constant sky. A compensated sum would do as well ({}), at twice the registers.",
+            "The kernel adds at most 16 samples in f32 and the film adds these sums in f64: at most {} off here, {} for random \
+             radiances, and {} \
+             in a real picture of a constant sky, no matter how many they are. A compensated f32 sum would cost the kernel twice the \
+             registers and \
+             hold less: {} off at the end.",
             share(largest(ours)),
             share(largest(&random.series[2])),
             share(worst_render),
-            share(largest(compensated)),
+            share(last(compensated)),
         ),
-        sees: "Nothing. With a plain f32 sum long renders would grow darker or brighter by percents, evenly and without noise, so that nobody notices.".into(),
+        sees: "Nothing. With a plain f32 sum long renders would grow darker or brighter by percents, evenly and without noise, so that \
+        nobody notices.".into(),
     };
     Ok(Sweep { charts: vec![constant, random, rendered], findings })
 }

@@ -12,6 +12,12 @@ pub(super) fn share(value: f64) -> String {
     }
 }
 
+/// A deviation with two standard errors: `-48 % +- 5.6 %`.
+pub(super) fn deviation(value: f64, error: f64) -> String {
+    let sign = if value > 0.0 { "+" } else { "" };
+    format!("{sign}{} +- {}", share(value), share(2.0 * error))
+}
+
 /// A count: `3`, `4200`, `1e6`.
 pub(super) fn count(value: f64) -> String {
     if value.abs() < 1e5 { format!("{value:.0}") } else { format!("{value:.0e}") }
@@ -36,6 +42,7 @@ mod tests {
     #[test]
     fn words() {
         assert_eq!([0.0, 1.25e-5, 0.0125, 0.5].map(share), ["0", "1.2e-5", "1.2 %", "50 %"]);
+        assert_eq!(deviation(0.0125, 0.25), "+1.2 % +- 50 %");
         assert_eq!([3.0, 4200.0, 1e6].map(count), ["3", "4200", "1e6"]);
         let point = |(x, y)| Point { x, y, error: None };
         let series =
