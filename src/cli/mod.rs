@@ -30,6 +30,7 @@ Examples:
   luminaire render model.obj -o model.png -o model.exr --spp 256
   luminaire inspect model.obj
   luminaire devices
+  luminaire stability --list
 
 ";
 

@@ -277,7 +277,7 @@ fn findings(steps: &Steps, [lights, objects, bounces, memory, noise, drift]: [&C
         ),
         how: format!(
             "One lamp is chosen by its power, not by its distance: of {most} lamps a point on the floor is lit by a few, which are \
-             hardly ever chosen. Trees make the time grow with the \
+             hardly ever chosen (so rarely at last that the measured deviation of direct light alone is itself too small). Trees make the time grow with the \
              logarithm of the number, and then with what no longer fits the caches; a ray takes, against one thing alone: {most} lamps \
              {}; {most} instances {}; {most} bounces {}. Memory grows in proportion (a thing: {bytes}). Long paths multiply as many \
              rounded \

@@ -6,8 +6,8 @@ use crate::measure::chart::Series;
 pub(super) fn share(value: f64) -> String {
     match value.abs() {
         0.0 => "0".into(),
-        size if size < 1e-3 || !size.is_finite() => format!("{value:.1e}"),
-        size if size < 0.1 => format!("{:.1} %", 100.0 * value),
+        size if size < 1e-3 || !size.is_finite() => format!("{value:.1e}").replace(".0e", "e"),
+        size if size < 0.1 || (size - 1.0).abs() < 0.05 => format!("{:.1} %", 100.0 * value),
         _ => format!("{:.0} %", 100.0 * value),
     }
 }
@@ -41,7 +41,10 @@ mod tests {
 
     #[test]
     fn words() {
-        assert_eq!([0.0, 1.25e-5, 0.0125, 0.5].map(share), ["0", "1.2e-5", "1.2 %", "50 %"]);
+        assert_eq!(
+            [0.0, 1.24e-5, 1e-4, 0.0125, 0.5, -0.998].map(share),
+            ["0", "1.2e-5", "1e-4", "1.2 %", "50 %", "-99.8 %"]
+        );
         assert_eq!(deviation(0.0125, 0.25), "+1.2 % +- 50 %");
         assert_eq!([3.0, 4200.0, 1e6].map(count), ["3", "4200", "1e6"]);
         let point = |(x, y)| Point { x, y, error: None };
