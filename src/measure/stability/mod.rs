@@ -1,6 +1,13 @@
 //! The stability map: every method over the range in which it can fail, on every backend.
 
+mod albedo;
+mod extinction;
+mod many;
 mod page;
+mod rooms;
+mod samples;
+mod trial;
+mod words;
 
 pub use page::{Head, Outcome, page};
 
@@ -49,7 +56,7 @@ pub struct Definition {
 }
 
 /// Every sweep, in the order of the map.
-pub const SWEEPS: &[Definition] = &[];
+pub const SWEEPS: &[Definition] = &[samples::DEFINITION, albedo::DEFINITION, extinction::DEFINITION, many::DEFINITION];
 
 /// The sweeps of these names, in the order of the map; all of them for no name.
 ///
