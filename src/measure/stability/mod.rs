@@ -1,5 +1,15 @@
 //! The stability map: every method over the range in which it can fail, on every backend.
 
+pub mod distance;
+pub mod edges;
+pub mod eta;
+pub mod gaps;
+mod geometry;
+pub mod glass;
+pub mod instances;
+pub mod scale;
+pub mod slivers;
+
 use super::Workbench;
 use super::chart::Chart;
 use crate::Result;
@@ -38,4 +48,13 @@ pub struct Definition {
 }
 
 /// Every sweep, in the order of the map.
-pub const SWEEPS: &[Definition] = &[];
+pub const SWEEPS: &[Definition] = &[
+    distance::DEFINITION,
+    scale::DEFINITION,
+    edges::DEFINITION,
+    slivers::DEFINITION,
+    gaps::DEFINITION,
+    instances::DEFINITION,
+    eta::DEFINITION,
+    glass::DEFINITION,
+];
