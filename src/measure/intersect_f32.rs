@@ -47,9 +47,8 @@ impl Triangles {
         for (object, placed) in scene.objects.iter().enumerate() {
             let mesh = &scene.meshes[placed.mesh as usize];
             for (index, triangle) in mesh.triangles.iter().enumerate() {
-                let corners = triangle
-                    .vertices
-                    .map(|v| placed.object_to_world.transform_point3(mesh.positions[v as usize]));
+                let corners =
+                    triangle.vertices.map(|v| placed.object_to_world.transform_point3(mesh.positions[v as usize]));
                 let [a, b, c] = corners;
                 let (low, high) = (a.min(b).min(c), a.max(b).max(c));
                 triangles.push(Triangle { corners, low, high, object: object as u32, index: index as u32 });

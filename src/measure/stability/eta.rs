@@ -1,20 +1,24 @@
 //! Glass of all indices of refraction.
 
-use super::geometry::{COMPUTE_BVH, Worse, add, chart, describe, name_of};
+use super::geometry::{COMPUTE_BVH, REFERENCE, Worse, add, chart, describe, describe_all, name_of, named, value};
 use super::glass::{AroundGlass, around_glass, glass};
 use super::{Definition, Findings, Sweep};
 use crate::Result;
 use crate::backend::Backend;
 use crate::gpu::probe::{Call, Function};
 use crate::measure::Workbench;
-use crate::measure::chart::{Axis, Point};
+use crate::measure::chart::{Axis, Chart, Point};
 use crate::measure::rays::Random;
 use crate::reference::impulse::{fresnel, refract};
 use crate::scene::build::{add as add_mesh, cube, empty, icosphere};
 use glam::{Affine3A, DVec3, Vec3};
 
 /// The sweep.
-pub const DEFINITION: Definition = Definition { name: "eta", title: "Glass with an index of refraction of 1.0001 to 4", run };
+pub const DEFINITION: Definition =
+    Definition { name: "eta", title: "Glass with an index of refraction of 1.0001 to 4", run };
+
+const BY_SINE_OUTSIDE: &str = "f32 by the sine, from outside";
+const BY_SINE_INSIDE: &str = "f32 by the sine, from inside";
 
 fn run(bench: &Workbench) -> Result<Sweep> {
     let mut etas = vec![1.0001, 1.001, 1.01, 1.1, 1.33, 1.5, 2.0, 2.4, 4.0];
@@ -37,10 +41,18 @@ pub fn sweep(bench: &Workbench, etas: &[f64], angles: usize, samples: u32) -> Re
         x(),
         "error of the reflectance",
     );
-    let mut direction =
-        chart("direction", "Refracted direction in single precision, largest error over all angles", x(), "error in radians");
-    let mut furnace =
-        chart("furnace", "A glass ball in white light from everywhere: off from white", x(), "difference of the mean from 1");
+    let mut direction = chart(
+        "direction",
+        "Refracted direction in single precision, largest error over all angles",
+        x(),
+        "error in radians",
+    );
+    let mut furnace = chart(
+        "furnace",
+        "A glass ball in white light from everywhere: off from white",
+        x(),
+        "difference of the mean from 1",
+    );
     let mut longest = chart("longest", "Longest path through a glass ball", x(), "rays");
     let mut trapped = chart(
         "trapped",
@@ -68,7 +80,8 @@ pub fn sweep(bench: &Workbench, etas: &[f64], angles: usize, samples: u32) -> Re
         }
         if bench.backends().contains(&Backend::ComputeBvh) {
             let probe = bench.probe(&ball, Backend::ComputeBvh)?;
-            for (side, eta) in [("from outside", eta), ("from inside", 1.0 / eta)] {
+            let sides = [("from outside", BY_SINE_OUTSIDE, eta), ("from inside", BY_SINE_INSIDE, 1.0 / eta)];
+            for (side, by_sine, eta) in sides {
                 let eta = eta as f32;
                 let wos = directions(f64::from(eta), angles);
                 let calls: Vec<Call> = wos
@@ -76,11 +89,14 @@ pub fn sweep(bench: &Workbench, etas: &[f64], angles: usize, samples: u32) -> Re
                     .map(|wo| [[wo.x.to_bits(), wo.y.to_bits(), wo.z.to_bits(), eta.to_bits()], [0; 4]])
                     .collect();
                 let results = probe.call(Function::Refract, &calls)?;
-                let (mut of_reflectance, mut of_direction) = (0.0f64, 0.0f64);
+                let (mut of_reflectance, mut of_direction, mut of_sine) = (0.0f64, 0.0f64, 0.0f64);
                 for (wo, result) in wos.iter().zip(&results) {
                     let [dx, dy, dz, r] = result[0].map(|bits| f64::from(f32::from_bits(bits)));
+                    let sine = f64::from(fresnel_by_sine(eta, wo.z));
                     let eta = f64::from(eta);
-                    of_reflectance = of_reflectance.max((r - fresnel(eta, f64::from(wo.z))).abs());
+                    let expected = fresnel(eta, f64::from(wo.z));
+                    of_reflectance = of_reflectance.max((r - expected).abs());
+                    of_sine = of_sine.max((sine - expected).abs());
                     let found = DVec3::new(dx, dy, dz);
                     if let Some(expected) = refract(wo.as_dvec3(), DVec3::Z, eta)
                         && found != DVec3::ZERO
@@ -89,6 +105,7 @@ pub fn sweep(bench: &Workbench, etas: &[f64], angles: usize, samples: u32) -> Re
                     }
                 }
                 let method = format!("{COMPUTE_BVH}, {side}");
+                add(&mut reflectance, by_sine, Point { x: at, y: of_sine, error: None });
                 add(&mut reflectance, &method, Point { x: at, y: of_reflectance, error: None });
                 add(&mut direction, &method, Point { x: at, y: of_direction, error: None });
             }
@@ -115,7 +132,38 @@ fn directions(eta: f64, n: usize) -> Vec<Vec3> {
     cosines.iter().map(|c| Vec3::new((1.0 - c * c).max(0.0).sqrt() as f32, 0.0, c.min(1.0) as f32)).collect()
 }
 
-fn findings(charts: &[crate::measure::chart::Chart]) -> Findings {
-    let w = Worse::Upwards;
-    Findings { starts: charts.iter().map(|c| describe(c, 0.0, w)).collect::<Vec<_>>().join("\n"), how: String::new(), mends: String::new(), sees: String::new() }
+/// Fresnel's reflectance in single precision, the refracted cosine by way of the sine: as textbooks have it.
+fn fresnel_by_sine(eta: f32, cos_i: f32) -> f32 {
+    let sine2 = (1.0 - cos_i * cos_i) / (eta * eta);
+    if sine2 >= 1.0 {
+        return 1.0;
+    }
+    let cos_t = (1.0 - sine2).sqrt();
+    let s = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
+    let p = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
+    0.5 * (s * s + p * p)
+}
+
+fn findings(charts: &[Chart]) -> Findings {
+    let at = |chart: &str, method: &str, x: f64| value(named(charts, chart), method, x);
+    let inside = format!("{COMPUTE_BVH}, from inside");
+    Findings {
+        starts: format!(
+            "{} {} Of the light that starts inside a cube, in the directions of the picture, {} never leaves at 1.5 (reference: {}).",
+            describe_all([named(charts, "reflectance"), named(charts, "direction")], 1e-4, Worse::Downwards),
+            describe(named(charts, "furnace"), 1e-6, Worse::Upwards),
+            at("trapped", COMPUTE_BVH, 0.5),
+            at("trapped", REFERENCE, 0.5)
+        ),
+        how: format!(
+            "Near the critical angle the refracted cosine is the root of a small difference, which doubles the share of the digits that are lost; for an index of              1.0001 that angle is so near to grazing that hardly any digit is left of 1 - sin^2 (error of the reflectance {} by the sine, {} as the kernel has it).              No energy is gained or lost by that: what is not reflected is transmitted. A glass body that stands in its own way keeps light: total internal reflection between parallel faces never ends,              and a path takes {} rays to get out of a ball of index 4.",
+            at("reflectance", BY_SINE_INSIDE, 1e-4),
+            at("reflectance", &inside, 1e-4),
+            at("longest", COMPUTE_BVH, 3.0)
+        ),
+        mends: "The cosine is computed as (eta - 1)(eta + 1) + cos^2, which has no such difference where the index is nearly 1. Light that                 passes a surface is divided by the square of the index, and multiplied by it on the way out: exactly 1. Extinction leaves one path                 in 10 000 at each bounce, so that trapped light ends."
+            .into(),
+        sees: "Nothing in the picture. Scenes in which much light is inside of glass bodies (luminaires cast in glass) take long: limit the bounces."
+            .into(),
+    }
 }

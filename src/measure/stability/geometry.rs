@@ -20,6 +20,8 @@ pub(super) const COMPUTE_BVH: &str = "compute BVH";
 pub(super) const RAY_QUERY: &str = "ray query";
 /// A model, in boxes that lose nothing, so that what is lost is lost by the triangle test.
 pub(super) const MOELLER_TRUMBORE: &str = "f32 Möller-Trumbore";
+/// The fixed smallest distance that renderers without a bound on their errors use, on a model that loses nothing else.
+pub(super) const T_MIN: &str = "f32 watertight, t_min 1e-4";
 /// A model whose triangle test loses nothing, so that what is lost is lost by the boxes.
 pub(super) const BARE_BOXES: &str = "f32 watertight, boxes not padded";
 
@@ -41,8 +43,7 @@ pub(super) struct Stand {
     probes: Vec<(&'static str, Probe)>,
     moeller_trumbore: Triangles,
     bare_boxes: Triangles,
-    /// The kernel's test in the kernel's boxes, for methods that differ from it elsewhere.
-    pub(super) watertight: Triangles,
+    watertight: Triangles,
 }
 
 impl Stand {
@@ -72,13 +73,46 @@ impl Stand {
         Ok(answers)
     }
 
-    /// What the rays meet after they were mirrored off the first surface, by the reference and the kernel.
-    pub(super) fn leaves(&self, rays: &[Ray]) -> Result<Answers> {
-        let mut answers = vec![(REFERENCE, reference_leaves(&self.reference, rays))];
+    /// What the rays meet first, and after they were mirrored off that: by the reference, by the kernel, and with each of `fixed` as the
+    /// smallest distance that keeps self-hits off.
+    pub(super) fn leaves(&self, rays: &[Ray], fixed: &[(&'static str, f32)]) -> Result<Vec<Departures>> {
+        let mut all = vec![Departures {
+            name: REFERENCE,
+            first: reference_hits(&self.reference, rays),
+            second: reference_leaves(&self.reference, rays),
+        }];
         for (name, probe) in &self.probes {
-            answers.push((name, probe_hits(probe, Function::Leave, rays)?));
+            let hits = |function| probe_hits(probe, function, rays);
+            all.push(Departures { name, first: hits(Function::ClosestHit)?, second: hits(Function::Leave)? });
         }
-        Ok(answers)
+        if !fixed.is_empty() {
+            let first = self.watertight.hits(rays, 0.0);
+            all.extend(fixed.iter().map(|&(name, t_min)| Departures {
+                name,
+                first: first.clone(),
+                second: self.watertight.leaves(rays, t_min),
+            }));
+        }
+        Ok(all)
+    }
+}
+
+/// What rays meet that are mirrored off a surface.
+pub(super) struct Departures {
+    /// The method.
+    pub(super) name: &'static str,
+    /// The hits from which they leave.
+    pub(super) first: Vec<Option<Hit>>,
+    /// What they meet then.
+    pub(super) second: Vec<Option<Hit>>,
+}
+
+impl Departures {
+    /// Rays whose second hit is the triangle that they left, and those that meet nothing although the first ray met something.
+    pub(super) fn self_hits_and_escapes(&self) -> [usize; 2] {
+        let pairs = || self.first.iter().zip(&self.second);
+        let same = |(f, s): &(&Option<Hit>, &Option<Hit>)| matches!((f, s), (Some(f), Some(s)) if (f.object, f.triangle) == (s.object, s.triangle));
+        [pairs().filter(same).count(), pairs().filter(|(f, s)| f.is_some() && s.is_none()).count()]
     }
 }
 
@@ -110,8 +144,17 @@ pub(super) fn rays_to_features(scene: &Scene, from: Affine3A, n: usize, random: 
         1 => a.lerp(b, random.uniform() as f32),
         _ => {
             let (u, v) = (random.uniform() as f32, random.uniform() as f32);
-            a + (b - a) * u.min(v) + (c - a) * (u.max(v) - u.min(v)) * 0.999
+            a + (b - a) * u.min(v) + (c - a) * (1.0 - u.max(v))
         }
+    })
+}
+
+/// Rays to points inside the first object's triangles, from points that `from` maps from the cube from -1 to 1: what leaves an edge of less than 90 degrees
+/// may start behind the other face, however little it is moved.
+pub(super) fn rays_to_faces(scene: &Scene, from: Affine3A, n: usize, random: &mut Random) -> Vec<Ray> {
+    rays_to(scene, from, n, random, |[a, b, c], _, random| {
+        let (u, v) = (random.uniform() as f32, random.uniform() as f32);
+        a + (b - a) * u.min(v) + (c - a) * (1.0 - u.max(v))
     })
 }
 
@@ -144,15 +187,6 @@ pub(super) fn per_million(x: f64, count: usize, of: usize) -> Point {
 /// Rays that meet nothing.
 pub(super) fn lost(hits: &[Option<Hit>]) -> usize {
     hits.iter().filter(|hit| hit.is_none()).count()
-}
-
-/// Rays whose second hit is the triangle that they left, and those that meet nothing although the first ray met something.
-pub(super) fn self_hits_and_escapes(first: &[Option<Hit>], second: &[Option<Hit>]) -> [usize; 2] {
-    let pairs = || first.iter().zip(second);
-    let same = |(f, s): &(&Option<Hit>, &Option<Hit>)| {
-        matches!((f, s), (Some(f), Some(s)) if (f.object, f.triangle) == (s.object, s.triangle))
-    };
-    [pairs().filter(same).count(), pairs().filter(|(f, s)| f.is_some() && s.is_none()).count()]
 }
 
 /// The 99.9th percentile of how far hits are from the reference's along unit rays, over both finding something.
@@ -206,27 +240,48 @@ pub(super) enum Worse {
     Downwards,
 }
 
-/// A chart in words: for each method from where on it exceeds `limit`, by how much there, and the most that it comes to.
+/// A chart in words: which methods stay at or below `limit`, and for the others from where on they exceed it, by how much there, and the most
+/// that they come to.
 pub(super) fn describe(chart: &Chart, limit: f64, worse: Worse) -> String {
-    let of_series = |series: &Series| {
+    let mut fine = Vec::new();
+    let mut rest = Vec::new();
+    for series in &chart.series {
         let mut points: Vec<Point> = series.points.iter().copied().filter(|p| p.y.is_finite()).collect();
         if worse == Worse::Downwards {
             points.reverse();
         }
         let worst = points.iter().copied().reduce(|a, b| if b.y > a.y { b } else { a });
-        match (points.iter().find(|p| p.y > limit), worst) {
-            (Some(first), Some(worst)) if worst.x != first.x => format!(
-                "{}: from {} on ({}), at most {} at {}",
-                series.name,
-                number(first.x),
-                number(first.y),
-                number(worst.y),
-                number(worst.x)
-            ),
-            (Some(first), _) => format!("{}: at {} ({})", series.name, number(first.x), number(first.y)),
-            (None, _) => format!("{}: nowhere", series.name),
-        }
-    };
-    let all: Vec<String> = chart.series.iter().map(of_series).collect();
-    format!("{}: {}.", chart.title, all.join("; "))
+        let (Some(first), Some(worst)) = (points.iter().find(|p| p.y > limit), worst) else {
+            fine.push(series.name.as_str());
+            continue;
+        };
+        let most = if worst.x == first.x {
+            String::new()
+        } else {
+            format!(", at most {} at {}", number(worst.y), number(worst.x))
+        };
+        rest.push(format!("{} from {} on ({}{most})", series.name, number(first.x), number(first.y)));
+    }
+    if !fine.is_empty() {
+        let most = if limit == 0.0 { "none".into() } else { format!("never above {}", number(limit)) };
+        rest.insert(0, format!("{most} with {}", fine.join(", ")));
+    }
+    format!("{} ({}): {}.", chart.title, chart.y.label, rest.join("; "))
+}
+
+/// Several charts in words.
+pub(super) fn describe_all<'a>(charts: impl IntoIterator<Item = &'a Chart>, limit: f64, worse: Worse) -> String {
+    charts.into_iter().map(|chart| describe(chart, limit, worse)).collect::<Vec<_>>().join(" ")
+}
+
+/// The chart of a name.
+pub(super) fn named<'a>(charts: &'a [Chart], name: &str) -> &'a Chart {
+    charts.iter().find(|chart| chart.name == name).expect("the sweep has made this chart")
+}
+
+/// The value of a method nearest to some `x`, in words; "not measured" where it did not run.
+pub(super) fn value(chart: &Chart, method: &str, x: f64) -> String {
+    let off = |p: &&Point| (p.x / x).ln().abs();
+    let points = chart.series.iter().filter(|series| series.name == method).flat_map(|series| &series.points);
+    points.min_by(|a, b| off(a).total_cmp(&off(b))).map_or("not measured".into(), |point| number(point.y))
 }
