@@ -134,11 +134,17 @@ fn findings(charts: &[Chart]) -> Findings {
             error(1e-3),
             error(1e-5)
         ),
-        how: "Two triangles that share an edge must come to the same verdict about it. Möller and Trumbore's test computes it from               different numbers for each of them; the watertight test from the same. Then it is the boxes: the ray meets an edge exactly where the               box ends, and rounding may put it outside. That hits floors along the axes hardest, whose boxes have no height. A ray               at a small angle meets the plane where its rounded height is used up: the error grows as one over the angle, and below               1e-5 degrees (the last digit of single precision) the plane is no longer met where it is."
+        how: "Two triangles that share an edge must come to the same verdict about it. Möller and Trumbore's test computes it from \
+             different numbers for each of them; the watertight test from the same. Then it is the boxes: the ray meets an edge exactly where the \
+             box ends, and rounding may put it outside. That hits floors along the axes hardest, whose boxes have no height. A ray \
+             at a small angle meets the plane where its rounded height is used up: the error grows as one over the angle, and below \
+             1e-5 degrees (the last digit of single precision) the plane is no longer met where it is."
             .into(),
-        mends: "The compute BVH has the watertight test, computed without fused multiply-add, in boxes padded by eight units in the last place. What the driver's ray                 query does is the driver's; the compute BVH can be asked for instead."
+        mends: "The compute BVH has the watertight test, computed without fused multiply-add, in boxes padded by eight units in the last place. What the driver's ray \
+             query does is the driver's; the compute BVH can be asked for instead."
             .into(),
-        sees: "With a method that loses rays: dotted light or dark lines along the edges of a mesh, a pixel here and there, which more                samples do not remove. Grazing angles: nothing."
+        sees: "With a method that loses rays: dotted light or dark lines along the edges of a mesh, a pixel here and there, which more \
+             samples do not remove. Grazing angles: nothing."
             .into(),
     }
 }

@@ -69,7 +69,7 @@ pub fn sweep(bench: &Workbench, etas: &[f64], angles: usize, samples: u32) -> Re
         add_mesh(&mut inside, cube(), glass(eta), Affine3A::from_rotation_x(0.3) * Affine3A::from_rotation_z(0.7));
         for backend in bench.backends() {
             let name = name_of(backend);
-            let outside = around_glass(bench, &mut ball, backend, 1000, samples, Vec3::Z * 3.0)?;
+            let outside = around_glass(bench, &mut ball, backend, 10_000, samples, Vec3::Z * 3.0)?;
             add(&mut furnace, name, Point { x: at, y: (outside.mean - 1.0).abs(), error: Some(outside.error) });
             add(&mut longest, name, Point { x: at, y: f64::from(outside.longest), error: None });
             let AroundGlass { ended, .. } =
@@ -156,12 +156,17 @@ fn findings(charts: &[Chart]) -> Findings {
             at("trapped", REFERENCE, 0.5)
         ),
         how: format!(
-            "Near the critical angle the refracted cosine is the root of a small difference, which doubles the share of the digits that are lost; for an index of              1.0001 that angle is so near to grazing that hardly any digit is left of 1 - sin^2 (error of the reflectance {} by the sine, {} as the kernel has it).              No energy is gained or lost by that: what is not reflected is transmitted. A glass body that stands in its own way keeps light: total internal reflection between parallel faces never ends,              and a path takes {} rays to get out of a ball of index 4.",
+            "Near the critical angle the refracted cosine is the root of a small difference, which doubles the share of the digits that are lost; for an index of \
+             1.0001 that angle is so near to grazing that hardly any digit is left of 1 - sin^2 (error of the reflectance {} by the sine, {} as the kernel has it). \
+             No energy is gained or lost by that: what is not reflected is transmitted. A glass body that stands in its own way keeps light: total internal reflection between parallel faces never ends, \
+             and a path takes {} rays to get out of a ball of index 4.",
             at("reflectance", BY_SINE_INSIDE, 1e-4),
             at("reflectance", &inside, 1e-4),
             at("longest", COMPUTE_BVH, 3.0)
         ),
-        mends: "The cosine is computed as (eta - 1)(eta + 1) + cos^2, which has no such difference where the index is nearly 1. Light that                 passes a surface is divided by the square of the index, and multiplied by it on the way out: exactly 1. Extinction leaves one path                 in 10 000 at each bounce, so that trapped light ends."
+        mends: "The cosine is computed as (eta - 1)(eta + 1) + cos^2, which has no such difference where the index is nearly 1. Light that \
+             passes a surface is divided by the square of the index, and multiplied by it on the way out: exactly 1. Extinction leaves one path \
+             in 10 000 at each bounce, so that trapped light ends."
             .into(),
         sees: "Nothing in the picture. Scenes in which much light is inside of glass bodies (luminaires cast in glass) take long: limit the bounces."
             .into(),

@@ -112,7 +112,9 @@ fn rays_from_below(map: Affine3A, n: usize) -> Vec<Ray> {
 fn findings(charts: &[Chart]) -> Findings {
     Findings {
         starts: describe_all(charts, 0.0, Worse::Downwards),
-        how: "A ray leaves a surface some way off it, lest it meets it again. A wall that is nearer than that is passed. A fixed distance passes               it at the distance itself, and at slanting angles before. The bound of the rounding is about 1e-6 of the largest of the               surface's size and its coordinates; nearer surfaces than that have corners that round into each other."
+        how: "A ray leaves a surface some way off it, lest it meets it again. A wall that is nearer than that is passed. A fixed distance passes \
+             it at the distance itself, and at slanting angles before. The bound of the rounding is about 1e-6 of the largest of the \
+             surface's size and its coordinates; nearer surfaces than that have corners that round into each other."
             .into(),
         mends: "The distance by which a ray is moved is the bound of its own rounding, no more: of the triangle's size, not of the scene's.".into(),
         sees: "Nothing for gaps of 1e-5 of the size and more. Below 1e-6 light shines through double walls, and surfaces that \

@@ -1,6 +1,6 @@
 //! Bodies of glass that touch, or nearly.
 
-use super::geometry::{Worse, add, chart, decades, describe_all, name_of, number};
+use super::geometry::{Worse, add, chart, decades, describe_all, name_of};
 use super::{Definition, Findings, Sweep};
 use crate::Result;
 use crate::backend::Backend;
@@ -80,6 +80,9 @@ fn nested(gap: f64) -> Scene {
     scene
 }
 
+/// Builds a scene with a gap.
+type SceneOfGap = fn(f64) -> Scene;
+
 /// The sweep over some gaps with so many samples a pixel.
 ///
 /// # Errors
@@ -88,7 +91,7 @@ pub fn sweep(bench: &Workbench, gaps: &[f64], samples: u32) -> Result<Sweep> {
     let x = || Axis::log("gap in sizes of the bodies");
     let mut charts = Vec::new();
     let mut touching = Vec::new();
-    let scenes: [(&str, &str, fn(f64) -> Scene); 2] = [
+    let scenes: [(&str, &str, SceneOfGap); 2] = [
         ("side-by-side", "Two cubes of glass side by side in white light", side_by_side),
         ("nested", "A ball of water in a ball of glass in white light", nested),
     ];
@@ -113,18 +116,22 @@ pub fn sweep(bench: &Workbench, gaps: &[f64], samples: u32) -> Result<Sweep> {
 
 fn findings(charts: &[Chart], touching: &[(&str, &str, f64)]) -> Findings {
     let touching: Vec<_> =
-        touching.iter().map(|(scene, method, mean)| format!("{scene}, {method}: {}", number(*mean))).collect();
+        touching.iter().map(|(scene, method, mean)| format!("{scene}, {method}: {:.4}", mean)).collect();
     Findings {
         starts: format!(
             "{} With no gap at all, where 1 is right: {}.",
             describe_all(charts, 1e-3, Worse::Downwards),
             touching.join("; ")
         ),
-        how: "Of two surfaces in one place a ray meets one, leaves it by its rounding bound, and is past the other. It then takes itself to be outside of a body               in which it is, and the factors of the squared index (2.25 for glass) no longer cancel: such a path brings too much light, or too little. In               double precision the same happens at gaps of 1e-8 and less to corners that are given in single precision."
+        how: "Of two surfaces in one place a ray meets one, leaves it by its rounding bound, and is past the other. It then takes itself to be outside of a body \
+             in which it is, and the factors of the squared index (2.25 for glass) no longer cancel: such a path brings too much light, or too little. In \
+             double precision the same happens at gaps of 1e-8 and less to corners that are given in single precision."
             .into(),
-        mends: "The bound is about 1e-6 of the size, so that gaps of 1e-5 and more are safe. Coincident faces of glass are not resolved: luminaire has no                 priorities of nested media."
+        mends: "The bound is about 1e-6 of the size, so that gaps of 1e-5 and more are safe. Coincident faces of glass are not resolved: luminaire has no \
+             priorities of nested media."
             .into(),
-        sees: "Glass that touches glass, or liquid that touches its glass, too bright or too dark in patches. Leave a gap of 1e-4 of the size,                or model the common face once, with the ratio of both indices."
+        sees: "Glass that touches glass, or liquid that touches its glass, too bright or too dark in patches. Leave a gap of 1e-4 of the size, \
+             or model the common face once, with the ratio of both indices."
             .into(),
     }
 }

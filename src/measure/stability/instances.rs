@@ -142,7 +142,7 @@ fn findings(charts: &[Chart]) -> Findings {
              object's origin.",
             escapes(COMPUTE_BVH, 1e3)
         ),
-        sees: "Nothing up to 1 : 100; at 1 : 1000 light leaks along the rim of a flattened body. Beyond 1 : 1e4 flatten the mesh itself instead of the instance."
+        sees: "Nothing up to 1 : 100; from 1 : 1000 on light leaks along the rim of a flattened body. Beyond 1 : 1e4 flatten the mesh itself instead of the instance."
             .into(),
     }
 }

@@ -108,7 +108,11 @@ fn findings(charts: &[Chart]) -> Findings {
     Findings {
         starts: describe_all(charts, 1e-4, Worse::Upwards),
         how: format!(
-            "A fixed smallest distance of 1e-4 units is smaller than the rounding of a scene of 1e3 units, and larger than the gaps of a scene of 0.01 units. In              proportion to the size it is the same for every size, and still larger than the thin parts. The determinant of Möller and              Trumbore's test is a length to the third power (the direction is a unit vector: squared): compared with a fixed 1e-6 it calls all              triangles of about 1e-3 units edge-on. What scales all numbers of a computation alike changes no digit of it: the picture is off by {smallest} at              1e-8 and by {largest} at 1e8 units."
+            "A fixed smallest distance of 1e-4 units is smaller than the rounding of a scene of 1e3 units, and larger than the gaps of a scene of 0.01 units. In \
+             proportion to the size it is the same for every size, and still larger than the thin parts. The determinant of Möller and \
+             Trumbore's test is a length to the third power (the direction is a unit vector: squared): compared with a fixed 1e-6 it calls all \
+             triangles of about 1e-3 units edge-on. What scales all numbers of a computation alike changes no digit of it: the picture is off by {smallest} at \
+             1e-8 and by {largest} at 1e8 units."
         ),
         mends: "No length in the kernel is fixed: the rounding bound by which a ray leaves a surface scales with the scene. Squares of short vectors are taken after a division."
             .into(),

@@ -87,7 +87,7 @@ fn rays_to_strip(map: Affine3A, width: f64, n: usize) -> Vec<Ray> {
     let half = f64::from(SLIVERS / 2);
     let ray = |i: usize| {
         let line = (random.below(SLIVERS as usize) as f64 - half) * width;
-        let z = line + if i % 2 == 0 { 0.0 } else { random.uniform() * width };
+        let z = line + if i.is_multiple_of(2) { 0.0 } else { random.uniform() * width };
         let target = Vec3::new(random.between(-0.49, 0.49) as f32, 0.0, z as f32);
         let from = Vec3::new(
             random.between(-1.0, 1.0) as f32,
@@ -145,11 +145,16 @@ fn findings(bench: &Workbench, charts: &[Chart]) -> Result<Findings> {
     Ok(Findings {
         starts: format!("{} {}", describe_all(charts, 0.0, Worse::Upwards), doubled(bench)?),
         how: format!(
-            "The areas from which the place in a triangle is computed are differences of products that are as large as its length squared: where it is              narrower than that difference is certain (1 : 1e5), the distance, taken from the areas as the watertight test's authors have it, is any              between those of the corners. Hits are then wrong ({} a million at 1 : 1e6), and a ray that leaves meets the triangle again. What              is lost is lost at the edges, of which slivers have more than other triangles.",
+            "The areas from which the place in a triangle is computed are differences of products that are as large as its length squared: where it is \
+             narrower than that difference is certain (1 : 1e5), the distance, taken from the areas as the watertight test's authors have it, is any \
+             between those of the corners. Hits are then wrong ({} a million at 1 : 1e6), and a ray that leaves meets the triangle again. What \
+             is lost is lost at the edges, of which slivers have more than other triangles.",
             wrong(BARE_BOXES, 1e6)
         ),
         mends: format!(
-            "The compute BVH decides by the watertight test and takes the distance from the triangle's plane, whose normal is the product of its two shorter              edges ({} a million wrong at 1 : 1e6). The shading normal is that product too. Triangles of exactly no area are dropped              when a scene is loaded.",
+            "The compute BVH decides by the watertight test and takes the distance from the triangle's plane, whose normal is the product of its two shorter \
+             edges ({} a million wrong at 1 : 1e6). The shading normal is that product too. Triangles of exactly no area are dropped \
+             when a scene is loaded.",
             wrong(COMPUTE_BVH, 1e6)
         ),
         sees: "Nothing up to 1 : 1e6. Beyond, single precision cannot place the corners: the surface has folds. Texture coordinates slide along a sliver from 1 : 1e4 on."
