@@ -21,7 +21,7 @@ pub struct Workbench {
 
 impl Workbench {
     /// Opens the preferred Vulkan device, once with and once without ray queries. Without one only the reference is left, and
-    /// [`Workbench::device`] says so.
+    /// [`field@Workbench::device`] says so.
     ///
     /// # Errors
     /// If a device that is there cannot be opened.

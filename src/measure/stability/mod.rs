@@ -7,12 +7,15 @@ pub mod gaps;
 mod geometry;
 pub mod glass;
 pub mod instances;
+mod page;
 pub mod scale;
 pub mod slivers;
 
+pub use page::{Head, Outcome, page};
+
 use super::Workbench;
-use super::chart::Chart;
-use crate::Result;
+use super::chart::{CSV_HEADER, Chart};
+use crate::{Error, Result};
 
 /// A sweep that was run.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,6 +24,13 @@ pub struct Sweep {
     pub charts: Vec<Chart>,
     /// What they say.
     pub findings: Findings,
+}
+
+impl Sweep {
+    /// All points of all charts as CSV: chart, method, x, y, standard error.
+    pub fn csv(&self) -> String {
+        CSV_HEADER.to_owned() + &self.charts.iter().map(Chart::csv).collect::<String>()
+    }
 }
 
 /// The four answers of the map. Numbers in them come from the measured points, not from memory.
@@ -58,3 +68,16 @@ pub const SWEEPS: &[Definition] = &[
     eta::DEFINITION,
     glass::DEFINITION,
 ];
+
+/// The sweeps of these names, in the order of the map; all of them for no name.
+///
+/// # Errors
+/// [`Error::Usage`] for a name that no sweep has; it lists those there are.
+pub fn named(names: &[String]) -> Result<Vec<Definition>> {
+    if let Some(unknown) = names.iter().find(|name| SWEEPS.iter().all(|sweep| sweep.name != **name)) {
+        let known: Vec<_> = SWEEPS.iter().map(|sweep| sweep.name).collect();
+        return Err(Error::Usage(format!("there is no sweep `{unknown}`; there are: {}", known.join(", "))));
+    }
+    let wanted = |sweep: &&Definition| names.is_empty() || names.iter().any(|name| name == sweep.name);
+    Ok(SWEEPS.iter().filter(wanted).copied().collect())
+}
