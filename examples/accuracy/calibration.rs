@@ -10,9 +10,8 @@ use std::error::Error;
 use std::path::Path;
 
 /// Scenes with every kind of light and surface; the last one is known to be too hard for so few samples.
-const SCENES: [&str; 10] = [
-    "cornell", "directions", "lamps", "textures", "environment", "mirror", "lens", "plates", "glass", "many-lights",
-];
+const SCENES: [&str; 10] =
+    ["cornell", "directions", "lamps", "textures", "environment", "mirror", "lens", "plates", "glass", "many-lights"];
 const SAMPLES: [u32; 3] = [16, 64, 256];
 const SEEDS: u32 = 20;
 const WIDTH: u32 = 32;

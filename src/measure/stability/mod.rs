@@ -1,11 +1,20 @@
 //! The stability map: every method over the range in which it can fail, on every backend.
 
 mod albedo;
+pub mod distance;
+pub mod edges;
+pub mod eta;
 mod extinction;
+pub mod gaps;
+mod geometry;
+pub mod glass;
+pub mod instances;
 mod many;
 mod page;
 mod rooms;
 mod samples;
+pub mod scale;
+pub mod slivers;
 mod trial;
 mod words;
 
@@ -56,7 +65,20 @@ pub struct Definition {
 }
 
 /// Every sweep, in the order of the map.
-pub const SWEEPS: &[Definition] = &[samples::DEFINITION, albedo::DEFINITION, extinction::DEFINITION, many::DEFINITION];
+pub const SWEEPS: &[Definition] = &[
+    distance::DEFINITION,
+    scale::DEFINITION,
+    edges::DEFINITION,
+    slivers::DEFINITION,
+    gaps::DEFINITION,
+    instances::DEFINITION,
+    eta::DEFINITION,
+    glass::DEFINITION,
+    albedo::DEFINITION,
+    extinction::DEFINITION,
+    samples::DEFINITION,
+    many::DEFINITION,
+];
 
 /// The sweeps of these names, in the order of the map; all of them for no name.
 ///
