@@ -13,7 +13,7 @@ use luminaire::scene::{Integrator, Luminaire, Material, Projection, Scene};
 pub fn pixels(tracer: &mut dyn Tracer, scene: &Scene, samples: u32) -> Vec<DVec3> {
     let tile = Tile { x: 0, y: 0, width: scene.film.width, height: scene.film.height };
     let traced = tracer.trace(&Batch { tile, samples: 0..samples, group: samples }).expect("the tracer works");
-    assert_eq!(traced.non_finite, 0);
+    assert_eq!(traced.dropped, []);
     traced.sums.iter().map(|s| DVec3::from(s.radiance) / f64::from(samples)).collect()
 }
 

@@ -164,8 +164,8 @@ fn picture(bench: &Workbench, view: &View, backend: Backend, seed: u32, samples:
         let part = (samples - done).min(MOST_AT_ONCE);
         let group = part.div_ceil(GROUPS);
         let traced = tracer.trace(&Batch { tile, samples: done..done + part, group })?;
-        if traced.non_finite > 0 {
-            return Err(Error::scene(&scene.path, format!("{} samples are not finite", traced.non_finite)));
+        if !traced.dropped.is_empty() {
+            return Err(Error::scene(&scene.path, format!("{} samples are not finite", traced.dropped.len())));
         }
         for (i, sum) in traced.sums.iter().enumerate() {
             means[i % tile.pixels()].push(sum.radiance.iter().sum::<f64>() / 3.0 / f64::from(group));
