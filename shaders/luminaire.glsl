@@ -54,16 +54,16 @@ float triangle_density(vec3 p, vec3 wi, Hit hit, float area_density) {
     return area_density * hit.t * hit.t * double_area / abs(dot(normal, wi));
 }
 
-// The weight of emission that a ray with the density `pdf` found, where `density` is that of direct light.
+// The weight of emission that a ray with the density `pdf` (see `surviving`) found, where `density` is that of direct light.
 float emission_weight(float pdf, float density) {
     if (LIGHT_SAMPLING == LIGHT_NONE || pdf == IMPULSE) return 1.0;
     if (LIGHT_SAMPLING == LIGHT_DIRECT) return 0.0;
     return power_heuristic(pdf, density);
 }
 
-// Light from one luminaire that `s` sends towards `wo`; `rest` is the probability that a path takes no impulse there. Adds the shadow
-// ray to `rays`.
-vec3 direct_light(Surfel s, Material material, vec3 wo, uvec4 random, float rest, uint salt, inout uint rays) {
+// Light from one luminaire that `s` sends towards `wo`; `throughput` is the path's so far, without eta^2, and `rest` the probability that
+// it takes no impulse there. Adds the shadow ray to `rays`.
+vec3 direct_light(Surfel s, Material material, vec3 wo, vec3 throughput, uvec4 random, float rest, uint salt, inout uint rays) {
     if (frame.luminaire_count == 0u) return vec3(0.0);
     Luminaire light = luminaires[choose_luminaire(random.z)];
     // With one kind of luminaire in the scene these are constants.
@@ -115,9 +115,12 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, uvec4 random, float rest
     }
     if (area && light.normal.w != 0.0 && dot(light.normal.xyz, wi) > 0.0) return vec3(0.0);
     vec4 f = bsdf_and_pdf(s, material, wo, wi);
-    vec3 radiance = f.rgb * dot(s.shading_normal, wi) * incident;
+    vec3 scattered = f.rgb * dot(s.shading_normal, wi);
+    vec3 radiance = scattered * incident;
     if (radiance == vec3(0.0)) return vec3(0.0);
-    if (LIGHT_SAMPLING == LIGHT_MIS && (area || surroundings)) radiance *= power_heuristic(density, f.w * rest);
+    if (LIGHT_SAMPLING == LIGHT_MIS && (area || surroundings)) {
+        radiance *= power_heuristic(density, surviving(f.w * rest, throughput * scattered, material));
+    }
 
     if (area && (TEXTURES || HOLES)) {
         uint emission_map = materials[light.material].maps.w;
