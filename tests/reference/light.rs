@@ -151,10 +151,9 @@ fn blockers_between_shadow_and_blockers_behind_do_not() {
                     tracer.closest_hit(DVec3::new(0.25, 1e-3, 0.5), -DVec3::Y, f64::INFINITY, 0).expect("the floor");
                 tracer.surfel(&hit, DVec3::Y)
             };
-            let found = Estimate::new(
-                (0..1000)
-                    .map(|i| tracer.direct_light(&surfel, DVec3::Y, DVec3::ONE, random4(0, i, 1, 42), 0, &mut 0).x * PI / ALBEDO),
-            );
+            let found = Estimate::new((0..1000).map(|i| {
+                tracer.direct_light(&surfel, DVec3::Y, DVec3::ONE, random4(0, i, 1, 42), 0, &mut 0).x * PI / ALBEDO
+            }));
             assert!((found.mean - expected).abs() <= 1e-12, "slab at {y}: {} instead of {expected}", found.mean);
         }
     }

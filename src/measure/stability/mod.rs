@@ -1,5 +1,10 @@
 //! The stability map: every method over the range in which it can fail, on every backend.
 
+pub mod caustics;
+pub mod glossy;
+pub mod luminaire;
+mod spot;
+
 use super::Workbench;
 use super::chart::Chart;
 use crate::Result;
@@ -38,4 +43,5 @@ pub struct Definition {
 }
 
 /// Every sweep, in the order of the map.
-pub const SWEEPS: &[Definition] = &[];
+pub const SWEEPS: &[Definition] =
+    &[glossy::DEFINITION, luminaire::DISTANCE, luminaire::TILT, caustics::MIRROR, caustics::LOBE];
