@@ -1,6 +1,7 @@
 //! The stability map: every method over the range in which it can fail, on every backend.
 
 mod albedo;
+pub mod caustics;
 pub mod distance;
 pub mod edges;
 pub mod eta;
@@ -8,13 +9,16 @@ mod extinction;
 pub mod gaps;
 mod geometry;
 pub mod glass;
+pub mod glossy;
 pub mod instances;
+pub mod luminaire;
 mod many;
 mod page;
 mod rooms;
 mod samples;
 pub mod scale;
 pub mod slivers;
+mod spot;
 mod trial;
 mod words;
 
@@ -74,6 +78,11 @@ pub const SWEEPS: &[Definition] = &[
     instances::DEFINITION,
     eta::DEFINITION,
     glass::DEFINITION,
+    glossy::DEFINITION,
+    luminaire::DISTANCE,
+    luminaire::TILT,
+    caustics::MIRROR,
+    caustics::LOBE,
     albedo::DEFINITION,
     extinction::DEFINITION,
     samples::DEFINITION,
