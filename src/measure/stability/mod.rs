@@ -11,8 +11,8 @@ mod geometry;
 pub mod glass;
 pub mod glossy;
 pub mod instances;
-pub mod luminaire;
 mod many;
+pub mod near_lamps;
 mod page;
 mod rooms;
 mod samples;
@@ -79,8 +79,8 @@ pub const SWEEPS: &[Definition] = &[
     eta::DEFINITION,
     glass::DEFINITION,
     glossy::DEFINITION,
-    luminaire::DISTANCE,
-    luminaire::TILT,
+    near_lamps::DISTANCE,
+    near_lamps::TILT,
     caustics::MIRROR,
     caustics::LOBE,
     albedo::DEFINITION,
