@@ -40,26 +40,26 @@ fn main() {
     println!("|---|---|---|---|---|---|");
     for path in std::env::args().skip(1) {
         let mut scene = scene::load(Path::new(&path)).unwrap_or_else(|e| panic!("{e}"));
-        scene.film.width = 512;
-        scene.film.height = 512;
+        scene.film.width = 256;
+        scene.film.height = 256;
         let mut opened: Vec<_> = backends
             .iter()
             .map(|b| {
                 backend::open(&scene, &Request { backend: Some(*b), device: None }).unwrap_or_else(|e| panic!("{e}"))
             })
             .collect();
-        // A full picture, 1 to 4 samples a pixel: about a second each.
-        let tile = Tile { x: 0, y: 0, width: 512, height: 512 };
+        // A full picture, 4 samples a pixel of every part: about a second each.
+        let tile = Tile { x: 0, y: 0, width: 256, height: 256 };
         let batch = |samples| Batch { tile, samples, group: 4 };
         let mut rates = vec![Vec::new(); backends.len()];
         let mut samples_a_ray = 0.0;
         for round in 0..ROUNDS + 1 {
             for (which, o) in opened.iter_mut().enumerate() {
                 let start = Instant::now();
-                let traced = o.tracer.trace(&batch(0..4)).expect("the tracer works");
+                let traced = o.tracer.trace(&batch(0..16)).expect("the tracer works");
                 let seconds = start.elapsed().as_secs_f64();
                 let rays: u64 = traced.sums.iter().map(|s| u64::from(s.rays)).sum();
-                samples_a_ray = 4.0 * tile.pixels() as f64 / rays as f64;
+                samples_a_ray = 16.0 * tile.pixels() as f64 / rays as f64;
                 // The first round compiles the shaders.
                 if round > 0 {
                     rates[which].push(rays as f64 / seconds * 1e-6);

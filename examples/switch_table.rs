@@ -26,7 +26,7 @@ fn open(device: &Arc<Device>, scene: &Scene, ray_query: bool, adjust: impl FnOnc
 fn seconds(tracer: &mut GpuTracer) -> f64 {
     let tile = Tile { x: 0, y: 0, width: SIZE, height: SIZE };
     let start = Instant::now();
-    tracer.trace(&Batch { tile, samples: 0..8, group: 8 }).expect("the tracer works");
+    tracer.trace(&Batch { tile, samples: 0..32, group: 8 }).expect("the tracer works");
     start.elapsed().as_secs_f64()
 }
 

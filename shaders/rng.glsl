@@ -61,6 +61,7 @@ uint ray_salt(uint pixel, uint sample_index, uint ray, uint seed) {
 // A ray is stopped by a surface if uniform1 of this number is below its opacity; the scene's indices.
 uint coverage(uint salt, uint object, uint triangle) { return random4(salt, object, triangle, 0u).x; }
 
-// In [0, 1), exact: the upper 24 bits.
-float uniform1(uint random) { return float(random >> 8u) * (1.0 / 16777216.0); }
-vec2 uniform2(uvec2 random) { return vec2(random >> 8u) * (1.0 / 16777216.0); }
+// In (0, 1), exact: the middle of one of 2^23 intervals. An end of the range would put a direction on the rim of its hemisphere, where its
+// path ends.
+float uniform1(uint random) { return (float(random >> 9u) + 0.5) * (1.0 / 8388608.0); }
+vec2 uniform2(uvec2 random) { return (vec2(random >> 9u) + 0.5) * (1.0 / 8388608.0); }

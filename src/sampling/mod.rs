@@ -90,7 +90,8 @@ pub fn random4(pixel: u32, sample: u32, block: u32, seed: u32) -> [u32; 4] {
     [x, y, z, w]
 }
 
-/// A number in [0, 1) from the upper 24 bits: exact in `f32` and in `f64`, so both tracers see the same value.
+/// A number in (0, 1) from the upper 23 bits, the middle of one of as many intervals: exact in `f32` and in `f64`, so both tracers see the
+/// same value. Neither end is ever met: it would put a direction on the rim of its hemisphere, where its path ends.
 pub fn uniform(random: u32) -> f64 {
-    f64::from(random >> 8) / f64::from(1u32 << 24)
+    (f64::from(random >> 9) + 0.5) / f64::from(1u32 << 23)
 }

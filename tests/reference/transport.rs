@@ -231,19 +231,19 @@ fn the_partition_of_the_work_does_not_matter() {
     let scene = cornell_like(12, 10);
     let mut tracer = Reference::new(&scene);
     let all = Tile { x: 0, y: 0, width: 12, height: 10 };
-    let whole = tracer.trace(&Batch { tile: all, samples: 3..11, group: 4 }).expect("traced").sums;
-    assert_eq!(whole.len(), 240);
+    let whole = tracer.trace(&Batch { tile: all, samples: 3..19, group: 2 }).expect("traced").sums;
+    assert_eq!(whole.len(), 8 * 120);
 
     let brute =
-        Reference::brute_force(&scene).trace(&Batch { tile: all, samples: 3..11, group: 4 }).expect("traced").sums;
+        Reference::brute_force(&scene).trace(&Batch { tile: all, samples: 3..19, group: 2 }).expect("traced").sums;
     assert_eq!(whole, brute);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
-    let single = pool.install(|| tracer.trace(&Batch { tile: all, samples: 3..11, group: 4 })).expect("traced").sums;
+    let single = pool.install(|| tracer.trace(&Batch { tile: all, samples: 3..19, group: 2 })).expect("traced").sums;
     assert_eq!(whole, single);
 
     for (x, y, width, height) in [(0, 0, 5, 10), (5, 0, 7, 3), (5, 3, 7, 7)] {
         let tile = Tile { x, y, width, height };
-        let sums = tracer.trace(&Batch { tile, samples: 3..11, group: 4 }).expect("traced").sums;
+        let sums = tracer.trace(&Batch { tile, samples: 3..19, group: 2 }).expect("traced").sums;
         for (index, sum) in sums.iter().enumerate() {
             let (group, in_tile) = (index / tile.pixels(), index % tile.pixels());
             let (row, column) = (in_tile / width as usize, in_tile % width as usize);
@@ -251,10 +251,10 @@ fn the_partition_of_the_work_does_not_matter() {
         }
     }
     // One by one; then groups that do not divide the samples.
-    let single = tracer.trace(&Batch { tile: all, samples: 3..11, group: 1 }).expect("traced").sums;
-    let uneven = tracer.trace(&Batch { tile: all, samples: 3..11, group: 3 }).expect("traced").sums;
-    let add = |sums: &[PixelSum], range: std::ops::Range<usize>, pixel: usize| {
-        range.fold(PixelSum::default(), |mut total, group| {
+    let single = tracer.trace(&Batch { tile: all, samples: 3..19, group: 1 }).expect("traced").sums;
+    let uneven = tracer.trace(&Batch { tile: all, samples: 3..19, group: 3 }).expect("traced").sums;
+    let add = |sums: &[PixelSum], groups: &[usize], pixel: usize| {
+        groups.iter().fold(PixelSum::default(), |mut total, group| {
             let sum = sums[group * 120 + pixel];
             total.radiance = [0, 1, 2].map(|c| total.radiance[c] + sum.radiance[c]);
             total.rays += sum.rays;
@@ -262,10 +262,12 @@ fn the_partition_of_the_work_does_not_matter() {
         })
     };
     for pixel in 0..120 {
-        assert_eq!(add(&single, 0..4, pixel), whole[pixel]);
-        assert_eq!(add(&single, 4..8, pixel), whole[120 + pixel]);
-        assert_eq!(add(&single, 3..6, pixel), uneven[120 + pixel]);
-        assert_eq!(add(&single, 6..8, pixel), uneven[240 + pixel]);
+        // The samples of a group are four apart.
+        assert_eq!(add(&single, &[0, 4], pixel), whole[pixel]);
+        assert_eq!(add(&single, &[2, 6], pixel), whole[2 * 120 + pixel]);
+        assert_eq!(add(&single, &[9, 13], pixel), whole[5 * 120 + pixel]);
+        assert_eq!(add(&single, &[1, 5, 9], pixel), uneven[120 + pixel]);
+        assert_eq!(add(&single, &[15], pixel), uneven[7 * 120 + pixel]);
     }
 }
 

@@ -1,0 +1,134 @@
+#!/usr/bin/env python3
+"""Do the tests notice wrong physics? Applies deliberate bugs one by one to a copy, and runs the tests there until one fails.
+
+    python3 scripts/mutations.py            all of them: half an hour on two cores
+    python3 scripts/mutations.py eta half   those whose names contain one of the words
+    python3 scripts/mutations.py --list
+
+The copy is what git has of the working tree (tracked files as they are now), in target/mutations. Wants what `make test` wants. Exit code
+0 if every bug is caught, 1 if one is not, 2 if a bug does not fit the source any more.
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+COPY = ROOT / "target/mutations/copy"
+
+# The tests, fast and general ones first.
+CLOSED_FORMS = ["--test", "closed_forms"]
+ERROR_BAR = ["--test", "error_bar"]
+REFERENCE = ["--test", "reference"]
+KERNEL = ["--test", "gpu", "--", "--skip", "fallback"]
+
+# Name, file, what stands there (once), what the bug makes of it, and which tests are to notice.
+MUTATIONS = [
+    ("missing cosine", "shaders/luminaire.glsl",
+     "vec3 scattered = f.rgb * dot(s.shading_normal, wi);", "vec3 scattered = f.rgb;", [CLOSED_FORMS, KERNEL]),
+    ("missing 1/pi", "shaders/scatter.glsl",
+     "vec3 f = material.lambert.rgb * (1.0 / PI);", "vec3 f = material.lambert.rgb;", [CLOSED_FORMS, KERNEL]),
+    ("eta of the wrong side", "shaders/impulse.glsl",
+     "i.eta = s.front ? material.reflection.w : 1.0 / material.reflection.w;",
+     "i.eta = s.front ? 1.0 / material.reflection.w : material.reflection.w;", [CLOSED_FORMS, KERNEL]),
+    ("emission counted twice", "shaders/luminaire.glsl",
+     "    return power_heuristic(pdf, density);\n}", "    return 1.0;\n}", [CLOSED_FORMS, KERNEL]),
+    ("biased directions", "shaders/warp.glsl",
+     "return vec3(d, sqrt(max(0.0, 1.0 - dot(d, d))));", "return normalize(vec3(d, 1.0 - dot(d, d)));", [CLOSED_FORMS, KERNEL]),
+    ("half vector not normalised", "shaders/scatter.glsl",
+     "vec3 h = normalize(wi + wo);", "vec3 h = 0.5 * (wi + wo);", [CLOSED_FORMS, KERNEL]),
+    ("one over the distance", "shaders/luminaire.glsl",
+     "incident /= distance2;", "incident /= sqrt(distance2);", [CLOSED_FORMS, KERNEL]),
+    ("survivors not re-weighted", "shaders/path.glsl",
+     "        reweighted = alive;\n        path.throughput /= alive;", "        reweighted = alive;", [CLOSED_FORMS, KERNEL]),
+    ("radiance not over eta^2", "shaders/path.glsl",
+     "path.throughput *= next.weight / next.eta2;", "path.throughput *= next.weight;", [CLOSED_FORMS, KERNEL]),
+    ("blockers behind the lamp", "shaders/luminaire.glsl",
+     "return occluded(origin, direction, t_max, salt)", "return occluded(origin, direction, INFINITY, salt)", [CLOSED_FORMS, KERNEL]),
+    ("mirror as on the slide", "shaders/impulse.glsl",
+     "return 2.0 * dot(wo, n) * n - wo;", "return normalize(2.0 * n - wo);", [CLOSED_FORMS, KERNEL]),
+    ("weights that do not add up", "shaders/luminaire.glsl",
+     "return 1.0 / (1.0 + ratio * ratio);", "return 1.0 / (1.0 + ratio * ratio * ratio * ratio * 0.5);", [CLOSED_FORMS, KERNEL]),
+    ("density of a lamp without its cosine", "shaders/luminaire.glsl",
+     "hit.t * hit.t * double_area / abs(dot(normal, wi));", "hit.t * hit.t;", [CLOSED_FORMS, KERNEL]),
+    ("reference: missing 1/pi", "src/reference/surfel.rs",
+     "self.lambert / PI", "self.lambert", [CLOSED_FORMS, REFERENCE]),
+    ("parts share a scrambling", "shaders/rng.glsl",
+     "random4(pixel, ~part, block, seed)", "random4(pixel, ~0u, block, seed)", [ERROR_BAR, KERNEL]),
+    ("samples left out still count", "src/film.rs",
+     "taken - self.dropped.get(&(pixel, part)).unwrap_or(&0)", "taken", [["--lib", "film"]]),
+]
+
+
+def copy():
+    """The tracked files as they are, without touching those that have not changed."""
+    files = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, check=True).stdout.decode().split("\0")
+    for name in filter(None, files):
+        source, target = ROOT / name, COPY / name
+        if not source.is_file():
+            continue
+        if target.is_file() and target.read_bytes() == source.read_bytes():
+            continue
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(source, target)
+
+
+def run(arguments):
+    """Whether the tests pass, and the first that does not."""
+    environment = {**os.environ, "CARGO_TARGET_DIR": str(COPY.parent / "target"), "LUMINAIRE_REQUIRE_GPU": "1", "RUST_BACKTRACE": "0"}
+    done = subprocess.run(["cargo", "test", "--release", *arguments], cwd=COPY, env=environment, capture_output=True, text=True)
+    if done.returncode == 0:
+        return None
+    failed = [line.split()[1] for line in done.stdout.splitlines() if line.startswith("test ") and line.endswith("FAILED")]
+    if not failed:
+        sys.exit(f"the copy does not build, or the tests do not run:\n{done.stderr[-3000:]}")
+    return f"{arguments[1]}: {failed[0]}" + (f" and {len(failed) - 1} more" if len(failed) > 1 else "")
+
+
+def mutate(name, file, old, new, tests):
+    """The test that notices the bug; none if none does."""
+    path = COPY / file
+    text = path.read_text()
+    if text.count(old) != 1:
+        print(f"{name}: `{old}` stands {text.count(old)} times in {file}, not once", file=sys.stderr)
+        sys.exit(2)
+    path.write_text(text.replace(old, new))
+    try:
+        if file.startswith("shaders/"):
+            subprocess.run(["scripts/build-shaders.sh"], cwd=COPY, check=True, capture_output=True)
+        return next(filter(None, map(run, tests)), None)
+    finally:
+        path.write_text(text)
+        if file.startswith("shaders/"):
+            subprocess.run(["scripts/build-shaders.sh"], cwd=COPY, check=True, capture_output=True)
+
+
+def main():
+    words = sys.argv[1:]
+    if words == ["--list"]:
+        print("\n".join(f"{name}: {file}" for name, file, *_ in MUTATIONS))
+        return
+    if any(word.startswith("-") for word in words):
+        print(__doc__, file=sys.stderr)
+        sys.exit(2)
+    chosen = [m for m in MUTATIONS if not words or any(word in m[0] for word in words)]
+    copy()
+    kinds = [list(test) for test in {tuple(tests[0]) for *_, tests in chosen}]
+    for kind in kinds:
+        failed = run(kind)
+        if failed:
+            sys.exit(f"without any bug {failed} fails already")
+    missed = 0
+    for mutation in chosen:
+        start = time.monotonic()
+        caught = mutate(*mutation)
+        missed += caught is None
+        print(f"{'caught' if caught else 'MISSED'}  {mutation[0]}  ({caught or 'no test failed'}; {time.monotonic() - start:.0f} s)", flush=True)
+    print(f"{len(chosen) - missed} of {len(chosen)} caught")
+    sys.exit(1 if missed else 0)
+
+
+main()
