@@ -20,7 +20,7 @@ bool is_near(vec3 p, vec3 a, vec3 b, vec3 c, vec3 normal, float area, out vec3 v
     if (!SOLID_ANGLE) return false;
     // In its own plane a point sees nothing of the triangle, but rounding might make that half of all directions.
     float height = dot(normal, a - p);
-    if (height * height <= 1e-10 * area) return false;
+    if (height * height <= 1e-13 * area) return false;
     vec3 d = (a + b + c) * (1.0 / 3.0) - p;
     if (area <= 0.05 * dot(d, d)) return false;
     v[0] = normalize(a - p);
@@ -54,16 +54,16 @@ float triangle_density(vec3 p, vec3 wi, Hit hit, float area_density) {
     return area_density * hit.t * hit.t * double_area / abs(dot(normal, wi));
 }
 
-// The weight of emission that a ray with the density `pdf` found, where `density` is that of direct light.
+// The weight of emission that a ray with the density `pdf` (see `surviving`) found, where `density` is that of direct light.
 float emission_weight(float pdf, float density) {
     if (LIGHT_SAMPLING == LIGHT_NONE || pdf == IMPULSE) return 1.0;
     if (LIGHT_SAMPLING == LIGHT_DIRECT) return 0.0;
     return power_heuristic(pdf, density);
 }
 
-// Light from one luminaire that `s` sends towards `wo`; `rest` is the probability that a path takes no impulse there. Adds the shadow
-// ray to `rays`.
-vec3 direct_light(Surfel s, Material material, vec3 wo, uvec4 random, float rest, uint salt, inout uint rays) {
+// Light from one luminaire that `s` sends towards `wo`; `throughput` is the path's so far, without eta^2, and `rest` the probability that
+// it takes no impulse there. Adds the shadow ray to `rays`.
+vec3 direct_light(Surfel s, Material material, vec3 wo, vec3 throughput, uvec4 random, float rest, uint salt, inout uint rays) {
     if (frame.luminaire_count == 0u) return vec3(0.0);
     Luminaire light = luminaires[choose_luminaire(random.z)];
     // With one kind of luminaire in the scene these are constants.
@@ -71,6 +71,9 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, uvec4 random, float rest
     bool infinite = INFINITE_LUMINAIRES && (!several || light.kind == INFINITE);
     bool area = AREA_LUMINAIRES && (!several || light.kind == AREA);
     bool surroundings = ENVIRONMENT && (!several || light.kind == SURROUNDINGS);
+    // Whether a lamp is near is seen from where rays start, so that a path that meets it (`triangle_density`) agrees about its density, and
+    // its own triangle is below.
+    vec3 origin = offset_ray_origin(s.position, s.position_error, s.geometric_normal, s.geometric_normal);
     // Unshadowed radiance over the density of finding it, and the shadow ray that must reach (0, t_max) unhindered.
     vec3 target = light.a.xyz;
     vec3 wi = target;
@@ -87,11 +90,11 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, uvec4 random, float rest
         float double_area = 2.0 * light.b.w;
         vec3 v[3];
         float omega;
-        if (area && is_near(s.position, light.a.xyz, light.b.xyz, light.c.xyz, light.normal.xyz, light.b.w, v, omega)) {
+        if (area && is_near(origin, light.a.xyz, light.b.xyz, light.c.xyz, light.normal.xyz, light.b.w, v, omega)) {
             wi = spherical_triangle(v, omega, uniform2(random.xy));
-            float t = dot(light.normal.xyz, light.a.xyz - s.position) / dot(light.normal.xyz, wi);
-            target = s.position + t * wi;
-            target_error += gamma(8.0) * (largest(abs(s.position)) + largest(abs(light.a.xyz)));
+            float t = dot(light.normal.xyz, light.a.xyz - origin) / dot(light.normal.xyz, wi);
+            target = origin + t * wi;
+            target_error += gamma(8.0) * (largest(abs(origin)) + largest(abs(light.a.xyz)));
             incident *= omega;
             density = light.radiance.w / omega;
             // The plane may be missed where the triangle is seen edge-on.
@@ -115,9 +118,12 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, uvec4 random, float rest
     }
     if (area && light.normal.w != 0.0 && dot(light.normal.xyz, wi) > 0.0) return vec3(0.0);
     vec4 f = bsdf_and_pdf(s, material, wo, wi);
-    vec3 radiance = f.rgb * dot(s.shading_normal, wi) * incident;
+    vec3 scattered = f.rgb * dot(s.shading_normal, wi);
+    vec3 radiance = scattered * incident;
     if (radiance == vec3(0.0)) return vec3(0.0);
-    if (LIGHT_SAMPLING == LIGHT_MIS && (area || surroundings)) radiance *= power_heuristic(density, f.w * rest);
+    if (LIGHT_SAMPLING == LIGHT_MIS && (area || surroundings)) {
+        radiance *= power_heuristic(density, surviving(f.w * rest, throughput * scattered, material));
+    }
 
     if (area && (TEXTURES || HOLES)) {
         uint emission_map = materials[light.material].maps.w;
@@ -136,7 +142,6 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, uvec4 random, float rest
         }
     }
 
-    vec3 origin = offset_ray_origin(s.position, s.position_error, s.geometric_normal, wi);
     vec3 direction = wi;
     if (!infinite && !surroundings) {
         if (area) {

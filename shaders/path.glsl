@@ -6,7 +6,7 @@ struct Path {
     vec3 throughput;    // what a unit of radiance along that ray adds to the pixel
     vec3 radiance;      // what was found so far
     uint bounce;        // surfaces met so far
-    float pdf;          // density per steradian with which the direction was chosen; or IMPULSE, also for the camera's
+    float pdf;          // density per steradian with which the path went there (`surviving`); or IMPULSE, also for the camera's
     float eta_scale;    // product of the squared relative indices that were passed, by which refraction diluted the throughput
     vec3 albedo;        // product of the albedos (combinedAlbedo)
 };
@@ -61,7 +61,8 @@ bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uin
     if (LIGHT_SAMPLING != LIGHT_NONE && (!IMPULSES || glossy_or_lambert)) {
         uvec4 random = numbers(pixel_index, sample_index, light_block(path.bounce), frame.seed);
         salt = HOLES ? ray_salt(pixel_index, sample_index, 2u * path.bounce + 1u, frame.seed) : 0u;
-        path.radiance += path.throughput * direct_light(s, material, wo, random, 1.0 - i.probability, salt, rays);
+        vec3 seen = path.throughput * (DIELECTRICS ? path.eta_scale : 1.0);
+        path.radiance += path.throughput * direct_light(s, material, wo, seen, random, 1.0 - i.probability, salt, rays);
     }
     if (SIMPLE) return false;
     bool last = path.bounce == frame.max_bounces;
@@ -69,12 +70,16 @@ bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uin
     if (last && LIGHT_SAMPLING == LIGHT_DIRECT && !IMPULSES) return false;
 
     uvec4 random = numbers(pixel_index, sample_index, scatter_block(path.bounce), frame.seed);
+    float reweighted = 1.0;
     if (EXTINCTION == EXTINCTION_LITERAL || EXTINCTION == EXTINCTION_SURFACE) {
         float alive = survival(material);
         // Written so that a path whose numbers are not numbers ends too.
         if (!(uniform1(random.w) < alive)) return false;
         // The survivors stand for those that ended; the slide forgets that.
-        if (EXTINCTION == EXTINCTION_SURFACE) path.throughput /= alive;
+        if (EXTINCTION == EXTINCTION_SURFACE) {
+            reweighted = alive;
+            path.throughput /= alive;
+        }
     }
     Scattering next = scatter(s, material, i, wo, random);
     if (last && LIGHT_SAMPLING == LIGHT_DIRECT && next.pdf != IMPULSE) return false;
@@ -93,11 +98,12 @@ bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uin
         if (DIELECTRICS) path.eta_scale *= next.eta2;
         float alive = min(largest(path.throughput) * (DIELECTRICS ? path.eta_scale : 1.0), MAX_SURVIVAL);
         if (!(uniform1(random.w) < alive)) return false;
+        reweighted = alive;
         path.throughput /= alive;
     }
     path.origin = offset_ray_origin(s.position, s.position_error, s.geometric_normal, next.wi);
     path.direction = next.wi;
-    path.pdf = next.pdf;
+    path.pdf = next.pdf == IMPULSE ? IMPULSE : next.pdf * reweighted;
     path.bounce++;
     return true;
 }

@@ -53,6 +53,15 @@ float survival(Material material) {
     return min(largest(albedo), MAX_SURVIVAL);
 }
 
+// The density with which a path goes on to a direction that it chooses with the density `pdf`: extinction has to let it live. What the
+// power heuristic has to know; literal extinction is left out: its survivors do not stand for those that ended. `scattered` is the
+// throughput so far, without eta^2, times f cos.
+float surviving(float pdf, vec3 scattered, Material material) {
+    if (EXTINCTION == EXTINCTION_SURFACE) return pdf * survival(material);
+    if (EXTINCTION == EXTINCTION_THROUGHPUT) return min(largest(scattered), MAX_SURVIVAL * pdf);
+    return pdf;
+}
+
 // Marks a direction that no density describes. Not an infinity, of which a compiler may assume that there is none.
 const float IMPULSE = -1.0;
 

@@ -33,6 +33,7 @@ Examples:
   luminaire compare model.exr reference.exr
   luminaire inspect model.obj
   luminaire devices
+  luminaire stability --list
 
 ";
 

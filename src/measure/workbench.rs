@@ -58,6 +58,11 @@ impl Workbench {
         device.as_ref().ok_or_else(|| Error::NoDevice(format!("{backend} cannot run here: {}", self.device)))
     }
 
+    /// Bytes of device memory that the backend's tracers and probes hold now; none for the CPU and for what is not here.
+    pub fn allocated_bytes(&self, backend: Backend) -> Option<u64> {
+        (backend != Backend::Cpu).then(|| self.device(backend).ok().map(|device| device.allocated_bytes())).flatten()
+    }
+
     /// A tracer with a scene. The caller sees to it that the estimator ends.
     ///
     /// # Errors

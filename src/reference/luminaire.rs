@@ -1,7 +1,7 @@
 //! Direct light: next-event estimation (slides "Lighting Functions", "Shadows & Attenuation", "Area Luminaires").
 
 use super::Reference;
-use super::scatter::bsdf_pdf;
+use super::scatter::path_pdf;
 use super::surfel::{Surfel, interpolate, offset_ray_origin, position_error};
 use super::texture::texture_coordinates;
 use super::warp::{solid_angle, spherical_triangle, uniform_triangle};
@@ -35,7 +35,18 @@ impl Reference {
     /// Radiance towards `wo` from one luminaire, chosen by number 2 of `random` in proportion to its power and weighted by
     /// one over its probability; numbers 0 and 1 choose the point on it, with number 3 for an environment. `salt` is that of the
     /// shadow ray; it is added, if there is one, to `rays`.
-    pub fn direct_light(&self, surfel: &Surfel, wo: DVec3, random: [u32; 4], salt: u32, rays: &mut u32) -> DVec3 {
+    ///
+    /// `throughput` is the share of this radiance that reaches the camera, without `eta^2`, over the probability of the path: by it
+    /// [`path_pdf`] knows how likely the path itself is to find the luminaire.
+    pub fn direct_light(
+        &self,
+        surfel: &Surfel,
+        wo: DVec3,
+        throughput: DVec3,
+        random: [u32; 4],
+        salt: u32,
+        rays: &mut u32,
+    ) -> DVec3 {
         if !surfel.scatters() {
             return DVec3::ZERO;
         }
@@ -44,7 +55,7 @@ impl Reference {
         let estimator = self.scene.integrator.estimator();
         let weight = match (light.pdf, estimator.light_sampling) {
             (Some(pdf), LightSampling::Mis) => {
-                power_heuristic(pdf, bsdf_pdf(surfel, wo, light.wi, estimator.directions))
+                power_heuristic(pdf, path_pdf(surfel, wo, light.wi, throughput, &estimator))
             }
             _ => 1.0,
         };
@@ -199,7 +210,7 @@ fn impulse(surfel: &Surfel, luminaire: &Luminaire, probability: f64) -> Option<U
 /// Weight of emission that a ray finds: all of it if nothing else could have found it, that is if the ray comes from the camera or
 /// an impulse (`pdf` is none) or no light is sampled; none if light sampling has already counted it.
 ///
-/// `pdf` is the density with which the ray's direction was chosen, `light_pdf` that with which light sampling would have.
+/// `pdf` is the density with which the ray goes there ([`path_pdf`]), `light_pdf` that with which light sampling would have.
 pub fn emission_weight(light_sampling: LightSampling, pdf: Option<f64>, light_pdf: f64) -> f64 {
     match (pdf, light_sampling) {
         (None, _) | (_, LightSampling::None) => 1.0,

@@ -51,7 +51,7 @@ impl Reference {
         let mut eta_scale = 1.0;
         // Throughput without eta^2 and without extinction: the slides' `combinedAlbedo`.
         let mut combined_albedo = DVec3::ONE;
-        // Where the ray comes from, and the density of its direction; none for the camera and impulses.
+        // Where the ray comes from, and the density with which the path went there; none for the camera and impulses.
         let mut from = DVec3::ZERO;
         let mut pdf = None;
         let mut rays = 0;
@@ -75,8 +75,9 @@ impl Reference {
             }
             if estimator.light_sampling != LightSampling::None {
                 let shadow = salt(2 * bounce + 1);
-                radiance +=
-                    throughput * self.direct_light(&surfel, wo, numbers(light_block(bounce)), shadow, &mut rays);
+                let random = numbers(light_block(bounce));
+                let seen = throughput * eta_scale;
+                radiance += throughput * self.direct_light(&surfel, wo, seen, random, shadow, &mut rays);
             }
             if let Integrator::Simple { ambient } = self.scene.integrator {
                 radiance += ambient.as_dvec3() * surfel.ambient;
@@ -88,12 +89,14 @@ impl Reference {
 
             // Extinction by the surface. The survivors stand for those that ended, unless the slide is taken at its word.
             let random = numbers(scatter_block(bounce)).map(uniform);
+            let mut reweighted = 1.0;
             if matches!(estimator.extinction, Extinction::Literal | Extinction::Surface) {
                 let alive = survival(&surfel);
                 if random[3] >= alive {
                     break;
                 }
                 if estimator.extinction == Extinction::Surface {
+                    reweighted = alive;
                     throughput /= alive;
                 }
             }
@@ -126,10 +129,11 @@ impl Reference {
                 if random[3] >= alive {
                     break;
                 }
+                reweighted = alive;
                 throughput /= alive;
             }
             from = surfel.position;
-            pdf = scattered.pdf;
+            pdf = scattered.pdf.map(|pdf| pdf * reweighted);
             origin = surfel.offset_ray_origin(scattered.wi);
             direction = scattered.wi;
         }

@@ -7,7 +7,7 @@
 use super::impulse::reflect;
 use super::surfel::{Surfel, mean};
 use super::warp::{cosine_hemisphere, glossy_half_vector, uniform_hemisphere};
-use crate::scene::Directions;
+use crate::scene::{Directions, Estimator, Extinction};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
@@ -82,6 +82,24 @@ pub fn bsdf_pdf(surfel: &Surfel, wo: DVec3, wi: DVec3, directions: Directions) -
         }
     };
     (1.0 - surfel.impulse_probability(&surfel.impulses(wo))) * pdf
+}
+
+/// The density with which a path goes on to `wi`, per steradian: it chooses that direction, and extinction lets it live. What the power
+/// heuristic has to know: a path that seldom survives seldom finds the light, and counts for the more when it does. Literal extinction is
+/// left out: its survivors do not stand for those that ended.
+///
+/// `throughput` is that of the path so far, without `eta^2`.
+pub fn path_pdf(surfel: &Surfel, wo: DVec3, wi: DVec3, throughput: DVec3, estimator: &Estimator) -> f64 {
+    let pdf = bsdf_pdf(surfel, wo, wi, estimator.directions);
+    match estimator.extinction {
+        Extinction::Off | Extinction::Literal => pdf,
+        Extinction::Surface => pdf * survival(surfel),
+        Extinction::Throughput => {
+            // The throughput behind the surface is this over `pdf`.
+            let scattered = throughput * surfel.bsdf(wo, wi) * surfel.shading_normal.dot(wi);
+            scattered.max_element().min(MAX_SURVIVAL * pdf)
+        }
+    }
 }
 
 /// Density of the direction `wi` in which [`glossy_half_vector`] reflects `wo`, per steradian.

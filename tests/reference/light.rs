@@ -31,7 +31,7 @@ fn irradiance(tracer: &Reference, x: f64, z: f64, samples: u32) -> Estimate {
     let surfel = surfel_at(tracer, x, z);
     Estimate::new((0..samples).map(|i| {
         let mut rays = 0;
-        tracer.direct_light(&surfel, DVec3::Y, random4(0, i, 1, 42), 0, &mut rays).x * PI / ALBEDO
+        tracer.direct_light(&surfel, DVec3::Y, DVec3::ONE, random4(0, i, 1, 42), 0, &mut rays).x * PI / ALBEDO
     }))
 }
 
@@ -151,10 +151,9 @@ fn blockers_between_shadow_and_blockers_behind_do_not() {
                     tracer.closest_hit(DVec3::new(0.25, 1e-3, 0.5), -DVec3::Y, f64::INFINITY, 0).expect("the floor");
                 tracer.surfel(&hit, DVec3::Y)
             };
-            let found = Estimate::new(
-                (0..1000)
-                    .map(|i| tracer.direct_light(&surfel, DVec3::Y, random4(0, i, 1, 42), 0, &mut 0).x * PI / ALBEDO),
-            );
+            let found = Estimate::new((0..1000).map(|i| {
+                tracer.direct_light(&surfel, DVec3::Y, DVec3::ONE, random4(0, i, 1, 42), 0, &mut 0).x * PI / ALBEDO
+            }));
             assert!((found.mean - expected).abs() <= 1e-12, "slab at {y}: {} instead of {expected}", found.mean);
         }
     }
@@ -184,7 +183,7 @@ fn short_shadow_rays_far_from_the_origin() {
         let hit = tracer.closest_hit(from, down, f64::INFINITY, 0).expect("the floor");
         assert_eq!(hit.object, 0);
         let surfel = tracer.surfel(&hit, -down.normalize());
-        let light = tracer.direct_light(&surfel, -down.normalize(), random4(0, i, 3, 5), 0, &mut 0);
+        let light = tracer.direct_light(&surfel, -down.normalize(), DVec3::ONE, random4(0, i, 3, 5), 0, &mut 0);
         assert!(light.x > 0.0, "the lamp or the floor shadows itself at ({x}, {z})");
     }
 }
@@ -197,7 +196,7 @@ fn shadow_rays_are_cast_for_light_only() {
     let count = |scene: &Scene| {
         let tracer = Reference::new(scene);
         let mut rays = 0;
-        tracer.direct_light(&surfel_at(&tracer, 0.0, 0.0), DVec3::Y, [0; 4], 0, &mut rays);
+        tracer.direct_light(&surfel_at(&tracer, 0.0, 0.0), DVec3::Y, DVec3::ONE, [0; 4], 0, &mut rays);
         rays
     };
     assert_eq!(count(&scene), 1);

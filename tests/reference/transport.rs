@@ -182,7 +182,7 @@ fn surfaces_do_not_shadow_or_hit_themselves() {
                 let hit = tracer.closest_hit(origin, direction, f64::INFINITY, 0).expect("a closed shell");
                 let surfel = tracer.surfel(&hit, -direction);
                 let mut rays = 0;
-                let light = tracer.direct_light(&surfel, -direction, [0; 4], 0, &mut rays);
+                let light = tracer.direct_light(&surfel, -direction, DVec3::ONE, [0; 4], 0, &mut rays);
                 assert!(light.x > 0.0 && rays == 1, "the shell shadows itself at {}", surfel.position);
                 // Along the normal, slanted, and grazing down to a millionth.
                 let (tangent, _) = luminaire::reference::warp::frame(surfel.geometric_normal);

@@ -1,15 +1,26 @@
 //! The stability map: every method over the range in which it can fail, on every backend.
 
+mod albedo;
+pub mod caustics;
 pub mod distance;
 pub mod edges;
 pub mod eta;
+mod extinction;
 pub mod gaps;
 mod geometry;
 pub mod glass;
+pub mod glossy;
 pub mod instances;
+mod many;
+pub mod near_lamps;
 mod page;
+mod rooms;
+mod samples;
 pub mod scale;
 pub mod slivers;
+mod spot;
+mod trial;
+mod words;
 
 pub use page::{Head, Outcome, page};
 
@@ -67,6 +78,15 @@ pub const SWEEPS: &[Definition] = &[
     instances::DEFINITION,
     eta::DEFINITION,
     glass::DEFINITION,
+    glossy::DEFINITION,
+    near_lamps::DISTANCE,
+    near_lamps::TILT,
+    caustics::MIRROR,
+    caustics::LOBE,
+    albedo::DEFINITION,
+    extinction::DEFINITION,
+    samples::DEFINITION,
+    many::DEFINITION,
 ];
 
 /// The sweeps of these names, in the order of the map; all of them for no name.
