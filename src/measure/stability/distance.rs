@@ -1,7 +1,7 @@
 //! How far from the origin a scene may lie.
 
 use super::geometry::{
-    COMPUTE_BVH, RAY_QUERY, Stand, T_MIN, Worse, add, baked, chart, decades, describe_all, distance_error, lost, named,
+    COMPUTE_BVH, RAY_QUERY, Stand, T_MIN, Worse, add, baked, chart, decades, describe, distance_error, lost, named,
     per_million, placed, rays_to_faces, rays_to_features, value,
 };
 use super::{Definition, Findings, Sweep};
@@ -86,7 +86,7 @@ fn findings(charts: &[Chart]) -> Findings {
     let counts = charts.iter().filter(|chart| !chart.name.starts_with("error"));
     let error = |way: &str, method: &str| value(named(charts, &format!("error-{way}")), method, 1e4);
     Findings {
-        starts: describe_all(counts, 0.0, Worse::Upwards),
+        starts: describe(counts, 0.0, Worse::Upwards),
         how: format!(
             "Single precision has 24 bits: 1e5 sizes from the origin a coordinate is good to 0.8 % of the size, at 1e7 the body \
              is one point. Corners that are placed there are rounded once, and the body stays closed as long as it has a volume; \

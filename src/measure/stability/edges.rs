@@ -1,7 +1,7 @@
 //! Rays at edges and vertices, from straight on to grazing.
 
 use super::geometry::{
-    COMPUTE_BVH, Stand, Worse, add, baked, chart, decades, describe_all, distance_error, named, per_million, value,
+    COMPUTE_BVH, Stand, Worse, add, baked, chart, decades, describe, distance_error, named, per_million, value,
 };
 use super::{Definition, Findings, Sweep};
 use crate::Result;
@@ -129,7 +129,7 @@ fn findings(charts: &[Chart]) -> Findings {
     Findings {
         starts: format!(
             "{} The error along the ray, turned: {} at 1 degree, {} at 1e-3, {} at 1e-5.",
-            describe_all(charts.iter().filter(|chart| chart.name.starts_with("lost")), 0.0, Worse::Downwards),
+            describe(charts.iter().filter(|chart| chart.name.starts_with("lost")), 0.0, Worse::Downwards),
             error(1.0),
             error(1e-3),
             error(1e-5)

@@ -1,6 +1,6 @@
 //! Glass of all indices of refraction.
 
-use super::geometry::{COMPUTE_BVH, REFERENCE, Worse, add, chart, describe, describe_all, name_of, named, value};
+use super::geometry::{COMPUTE_BVH, REFERENCE, Worse, add, chart, describe, name_of, named, value};
 use super::glass::{AroundGlass, around_glass, glass};
 use super::{Definition, Findings, Sweep};
 use crate::Result;
@@ -150,8 +150,8 @@ fn findings(charts: &[Chart]) -> Findings {
     Findings {
         starts: format!(
             "{} {} Of the light that starts inside a cube, in the directions of the picture, {} never leaves at 1.5 (reference: {}).",
-            describe_all([named(charts, "reflectance"), named(charts, "direction")], 1e-4, Worse::Downwards),
-            describe(named(charts, "furnace"), 1e-6, Worse::Upwards),
+            describe([named(charts, "reflectance"), named(charts, "direction")], 1e-4, Worse::Downwards),
+            describe([named(charts, "furnace")], 1e-6, Worse::Upwards),
             at("trapped", COMPUTE_BVH, 0.5),
             at("trapped", REFERENCE, 0.5)
         ),

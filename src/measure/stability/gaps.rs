@@ -1,6 +1,6 @@
 //! Surfaces close to each other.
 
-use super::geometry::{Departures, Stand, T_MIN, Worse, add, chart, decades, describe_all, per_million};
+use super::geometry::{Departures, Stand, T_MIN, Worse, add, chart, decades, describe, per_million};
 use super::{Definition, Findings, Sweep};
 use crate::Result;
 use crate::measure::Workbench;
@@ -111,7 +111,7 @@ fn rays_from_below(map: Affine3A, n: usize) -> Vec<Ray> {
 
 fn findings(charts: &[Chart]) -> Findings {
     Findings {
-        starts: describe_all(charts, 0.0, Worse::Downwards),
+        starts: describe(charts, 0.0, Worse::Downwards),
         how: "A ray leaves a surface some way off it, lest it meets it again. A wall that is nearer than that is passed. A fixed distance passes \
              it at the distance itself, and at slanting angles before. The bound of the rounding is about 1e-6 of the largest of the \
              surface's size and its coordinates; nearer surfaces than that have corners that round into each other."

@@ -240,38 +240,45 @@ pub(super) enum Worse {
     Downwards,
 }
 
-/// A chart in words: which methods stay at or below `limit`, and for the others from where on they exceed it, by how much there, and the most
-/// that they come to.
-pub(super) fn describe(chart: &Chart, limit: f64, worse: Worse) -> String {
-    let mut fine = Vec::new();
-    let mut rest = Vec::new();
-    for series in &chart.series {
-        let mut points: Vec<Point> = series.points.iter().copied().filter(|p| p.y.is_finite()).collect();
-        if worse == Worse::Downwards {
-            points.reverse();
+/// Charts in words: which methods stay at or below `limit` in all of them, and for the others from where on they exceed it in one, by how much there
+/// and in which.
+pub(super) fn describe<'a>(charts: impl IntoIterator<Item = &'a Chart>, limit: f64, worse: Worse) -> String {
+    // Methods in the order of the charts, each with the first point beyond the limit and its chart.
+    let mut methods: Vec<(&str, Option<(Point, &Chart)>)> = Vec::new();
+    for chart in charts {
+        for series in &chart.series {
+            let mut beyond = series.points.iter().copied().filter(|p| p.y > limit);
+            let first = if worse == Worse::Upwards { beyond.next() } else { beyond.next_back() };
+            let found = first.map(|point| (point, chart));
+            let earlier = |a: &Point, b: &Point| match worse {
+                Worse::Upwards => a.x < b.x || (a.x == b.x && a.y > b.y),
+                Worse::Downwards => a.x > b.x || (a.x == b.x && a.y > b.y),
+            };
+            match methods.iter_mut().find(|(name, _)| *name == series.name) {
+                None => methods.push((&series.name, found)),
+                Some((_, known)) => {
+                    if let Some((point, _)) = found
+                        && known.is_none_or(|(first, _)| earlier(&point, &first))
+                    {
+                        *known = found;
+                    }
+                }
+            }
         }
-        let worst = points.iter().copied().reduce(|a, b| if b.y > a.y { b } else { a });
-        let (Some(first), Some(worst)) = (points.iter().find(|p| p.y > limit), worst) else {
-            fine.push(series.name.as_str());
-            continue;
-        };
-        let most = if worst.x == first.x {
-            String::new()
-        } else {
-            format!(", at most {} at {}", number(worst.y), number(worst.x))
-        };
-        rest.push(format!("{} from {} on ({}{most})", series.name, number(first.x), number(first.y)));
     }
+    let fine: Vec<_> = methods.iter().filter(|(_, first)| first.is_none()).map(|(name, _)| *name).collect();
+    let mut words: Vec<String> = methods
+        .iter()
+        .filter_map(|(name, first)| {
+            let (point, chart) = first.as_ref()?;
+            let what = chart.name.replace('-', " ");
+            Some(format!("{name} from {} on ({what}: {} {})", number(point.x), number(point.y), chart.y.label))
+        })
+        .collect();
     if !fine.is_empty() {
-        let most = if limit == 0.0 { "none".into() } else { format!("never above {}", number(limit)) };
-        rest.insert(0, format!("{most} with {}", fine.join(", ")));
+        words.push(format!("nowhere: {}", fine.join(", ")));
     }
-    format!("{} ({}): {}.", chart.title, chart.y.label, rest.join("; "))
-}
-
-/// Several charts in words.
-pub(super) fn describe_all<'a>(charts: impl IntoIterator<Item = &'a Chart>, limit: f64, worse: Worse) -> String {
-    charts.into_iter().map(|chart| describe(chart, limit, worse)).collect::<Vec<_>>().join(" ")
+    format!("{}.", words.join("; "))
 }
 
 /// The chart of a name.

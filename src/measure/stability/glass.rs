@@ -1,6 +1,6 @@
 //! Bodies of glass that touch, or nearly.
 
-use super::geometry::{Worse, add, chart, decades, describe_all, name_of};
+use super::geometry::{Worse, add, chart, decades, describe, name_of};
 use super::{Definition, Findings, Sweep};
 use crate::Result;
 use crate::backend::Backend;
@@ -120,7 +120,7 @@ fn findings(charts: &[Chart], touching: &[(&str, &str, f64)]) -> Findings {
     Findings {
         starts: format!(
             "{} With no gap at all, where 1 is right: {}.",
-            describe_all(charts, 1e-3, Worse::Downwards),
+            describe(charts, 1e-3, Worse::Downwards),
             touching.join("; ")
         ),
         how: "Of two surfaces in one place a ray meets one, leaves it by its rounding bound, and is past the other. It then takes itself to be outside of a body \

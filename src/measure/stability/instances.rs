@@ -1,7 +1,7 @@
 //! Instances that are stretched, mirrored and sheared.
 
 use super::geometry::{
-    COMPUTE_BVH, Stand, Worse, add, chart, decades, describe_all, distance_error, lost, named, per_million, placed,
+    COMPUTE_BVH, Stand, Worse, add, chart, decades, describe, distance_error, lost, named, per_million, placed,
     rays_to_faces, rays_to_features, value,
 };
 use super::{Definition, Findings, Sweep};
@@ -125,7 +125,7 @@ fn findings(charts: &[Chart]) -> Findings {
     Findings {
         starts: format!(
             "{} Error along the ray, compute BVH: {} at 1 : 100, {} at 1 : 1e4.",
-            describe_all(charts.iter().filter(|chart| !chart.name.starts_with("error")), 0.0, Worse::Upwards),
+            describe(charts.iter().filter(|chart| !chart.name.starts_with("error")), 0.0, Worse::Upwards),
             value(errors, COMPUTE_BVH, 100.0),
             value(errors, COMPUTE_BVH, 1e4)
         ),

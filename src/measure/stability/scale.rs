@@ -1,17 +1,17 @@
 //! How large or small a scene may be.
 
 use super::geometry::{
-    COMPUTE_BVH, Stand, T_MIN, Worse, add, baked, chart, decades, describe_all, lost, name_of, named, per_million,
+    COMPUTE_BVH, Stand, T_MIN, Worse, add, baked, chart, decades, describe, lost, name_of, named, per_million,
     rays_to_faces, rays_to_features, value,
 };
 use super::{Definition, Findings, Sweep};
 use crate::Result;
 use crate::backend::Backend;
+use crate::film::{Batch, Tile};
 use crate::measure::Workbench;
 use crate::measure::chart::{Axis, Chart, Point};
 use crate::measure::intersect_f32::{Test, Triangles};
 use crate::measure::rays::Random;
-use crate::measure::statistics::{render, total};
 use crate::scene::build::{add as add_mesh, cube, empty, icosphere, lamp, matte, pinhole, quad, transformed};
 use crate::scene::{Luminaire, Scene};
 use glam::{Affine3A, Vec3};
@@ -97,16 +97,21 @@ fn room() -> Scene {
     scene
 }
 
+/// Mean of a picture, over all channels.
 fn mean(bench: &Workbench, scene: &Scene, backend: Backend) -> Result<f64> {
-    let image = render(bench.tracer(scene, backend)?.as_mut(), scene.film.width, scene.film.height, 16, 2);
-    Ok(total(&image).mean)
+    const SAMPLES: u32 = 16;
+    let tile = Tile { x: 0, y: 0, width: scene.film.width, height: scene.film.height };
+    let batch = Batch { tile, samples: 0..SAMPLES, group: SAMPLES };
+    let traced = bench.tracer(scene, backend)?.trace(&batch)?;
+    let sum: f64 = traced.sums.iter().flat_map(|sum| sum.radiance).sum();
+    Ok(sum / (3.0 * f64::from(SAMPLES) * tile.pixels() as f64))
 }
 
 fn findings(charts: &[Chart]) -> Findings {
     let picture = named(charts, "picture");
     let (smallest, largest) = (value(picture, COMPUTE_BVH, 1e-8), value(picture, COMPUTE_BVH, 1e8));
     Findings {
-        starts: describe_all(charts, 1e-4, Worse::Upwards),
+        starts: describe(charts, 1e-4, Worse::Upwards),
         how: format!(
             "A fixed smallest distance of 1e-4 units is smaller than the rounding of a scene of 1e3 units, and larger than the gaps of a scene of 0.01 units. In \
              proportion to the size it is the same for every size, and still larger than the thin parts. The determinant of Möller and \

@@ -1,7 +1,7 @@
 //! Triangles that are long and narrow, that have no area, or that lie on each other.
 
 use super::geometry::{
-    BARE_BOXES, COMPUTE_BVH, Departures, Stand, T_MIN, Worse, add, baked, chart, decades, describe_all, lost, named,
+    BARE_BOXES, COMPUTE_BVH, Departures, Stand, T_MIN, Worse, add, baked, chart, decades, describe, lost, named,
     per_million, rays_to_faces, rays_to_features, value,
 };
 use super::{Definition, Findings, Sweep};
@@ -143,13 +143,14 @@ fn doubled(bench: &Workbench) -> Result<String> {
 fn findings(bench: &Workbench, charts: &[Chart]) -> Result<Findings> {
     let wrong = |method: &str, aspect: f64| value(named(charts, "wrong-turned"), method, aspect);
     Ok(Findings {
-        starts: format!("{} {}", describe_all(charts, 0.0, Worse::Upwards), doubled(bench)?),
+        starts: describe(charts, 0.0, Worse::Upwards),
         how: format!(
             "The areas from which the place in a triangle is computed are differences of products that are as large as its length squared: where it is \
              narrower than that difference is certain (1 : 1e5), the distance, taken from the areas as the watertight test's authors have it, is any \
              between those of the corners. Hits are then wrong ({} a million at 1 : 1e6), and a ray that leaves meets the triangle again. What \
-             is lost is lost at the edges, of which slivers have more than other triangles.",
-            wrong(BARE_BOXES, 1e6)
+             is lost is lost at the edges, of which slivers have more than other triangles. {}",
+            wrong(BARE_BOXES, 1e6),
+            doubled(bench)?
         ),
         mends: format!(
             "The compute BVH decides by the watertight test and takes the distance from the triangle's plane, whose normal is the product of its two shorter \
