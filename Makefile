@@ -5,7 +5,9 @@ BIN := $(or $(CARGO_TARGET_DIR),target)/release/luminaire
 OLD_DRIVER := target/drivers/mesa-22.3.6/lvp_icd.json
 VALIDATION := /usr/share/vulkan/explicit_layer.d/VkLayer_khronos_validation.json
 
-.PHONY: help render gallery test setup build shaders lint
+LONG_FLAG := $(if $(LONG),--long)
+
+.PHONY: help render gallery accuracy stability test setup build shaders lint
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-9s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -16,6 +18,12 @@ render: setup ## render the Cornell box to out/cornell.png and out/cornell.exr, 
 
 gallery: setup ## render the pictures of docs/gallery.md again (five minutes on two cores without a GPU)
 	scripts/gallery.sh
+
+stability: setup ## run every stability sweep again: docs/stability.md (LONG=1: finer steps, about ten times as long)
+	$(BIN) stability --out docs/stability --page docs/stability.md $(LONG_FLAG)
+
+accuracy: setup ## measure the tables of docs/accuracy.md again (LONG=1: more samples, about ten times as long)
+	cargo run --release --example accuracy -- $(LONG_FLAG)
 
 test: ## install what the tests want, then run them all
 	@scripts/setup.sh test

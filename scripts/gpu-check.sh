@@ -17,10 +17,10 @@ pack() {
         sed -n 's/.*"executable":"\([^"]*\/gpu-[^"]*\)".*/\1/p' | tail -n 1)
     [ -n "$tests" ] || { echo "gpu-check: the tests of the kernel were not built" >&2; exit 1; }
     cp "$tests" $pack/gpu-tests
-    cp target/release/luminaire target/release/examples/accuracy_table target/release/examples/speed_table $pack
+    cp target/release/luminaire target/release/examples/accuracy target/release/examples/speed_table $pack
     cp -r scenes $pack
     cp "$0" $pack/run.sh
-    strip $pack/gpu-tests $pack/luminaire $pack/accuracy_table $pack/speed_table 2>/dev/null || true
+    strip $pack/gpu-tests $pack/luminaire $pack/accuracy $pack/speed_table 2>/dev/null || true
     du -sh $pack
 }
 
@@ -32,8 +32,7 @@ check() {
     # Sharp where it can be: a failed test ends the run, after its report.
     ./gpu-tests --nocapture 2>&1 | tee "$out/tests.txt" | grep -E '^(test |SKIP|test result)'
     ./luminaire render scenes/cornell/cornell.toml -o "$out/cornell.png" --spp 1024 --stats "$out/cornell.json"
-    ./accuracy_table scenes/cornell/cornell.toml scenes/instances/instances.toml scenes/simple/simple.toml \
-        scenes/furnace/furnace.toml | tee "$out/accuracy.md"
+    ./accuracy --out "$out/accuracy.md"
     ./speed_table scenes/cornell/cornell.toml scenes/instances/instances.toml | tee "$out/speed.md"
 }
 

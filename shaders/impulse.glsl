@@ -1,10 +1,14 @@
 // Impulses (slides "Impulse Reflection", "Adding Transmission"): mirrors and smooth dielectrics; twins in src/reference/impulse.rs.
 
+// The square of the refracted direction's cosine; not above zero where all is reflected. As 1 - sin^2 / eta^2 it would lose all its digits
+// near the critical angle, and at grazing where the index is nearly 1.
+float transmitted_cosine2(float eta, float cos_i) { return ((eta - 1.0) * (eta + 1.0) + cos_i * cos_i) / (eta * eta); }
+
 // Reflectance of a smooth dielectric for unpolarised light; `eta` is the index behind the surface over that in front of it.
 float fresnel(float eta, float cos_i) {
-    float sine2 = (1.0 - cos_i * cos_i) / (eta * eta);
-    if (sine2 >= 1.0) return 1.0;
-    float cos_t = sqrt(1.0 - sine2);
+    float cosine2 = transmitted_cosine2(eta, cos_i);
+    if (cosine2 <= 0.0) return 1.0;
+    float cos_t = sqrt(cosine2);
     float s = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
     float p = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
     return 0.5 * (s * s + p * p);
@@ -13,9 +17,9 @@ float fresnel(float eta, float cos_i) {
 // The direction on the other side of a smooth surface; zero where all is reflected.
 vec3 refract_direction(vec3 wo, vec3 n, float eta) {
     float cos_i = dot(wo, n);
-    float sine2 = (1.0 - cos_i * cos_i) / (eta * eta);
-    if (sine2 >= 1.0) return vec3(0.0);
-    return normalize((cos_i / eta - sqrt(1.0 - sine2)) * n - wo / eta);
+    float cosine2 = transmitted_cosine2(eta, cos_i);
+    if (cosine2 <= 0.0) return vec3(0.0);
+    return normalize((cos_i / eta - sqrt(cosine2)) * n - wo / eta);
 }
 
 vec3 reflect_direction(vec3 wo, vec3 n) { return 2.0 * dot(wo, n) * n - wo; }

@@ -16,6 +16,30 @@ struct Hit {
 
 #define INFINITY uintBitsToFloat(0x7f800000u)
 
+float largest(vec3 v) { return max(v.x, max(v.y, v.z)); }
+
+// The cross product of the two shorter edges, towards where the corners are counter-clockwise: it rounds by their lengths, and that of a
+// narrow triangle's two long edges would be their small difference.
+vec3 triangle_normal(vec3 a, vec3 b, vec3 c) {
+    vec3 ab = b - a;
+    vec3 bc = c - b;
+    vec3 ca = a - c;
+    float length_ab = largest(abs(ab));
+    float length_bc = largest(abs(bc));
+    float length_ca = largest(abs(ca));
+    if (length_ab >= max(length_bc, length_ca)) return cross(bc, ca);
+    return length_bc >= length_ca ? cross(ca, ab) : cross(ab, bc);
+}
+
+// The product of their lengths, each by its largest coordinate.
+float shorter_edges(vec3 a, vec3 b, vec3 c) {
+    float ab = largest(abs(b - a));
+    float bc = largest(abs(c - b));
+    float ca = largest(abs(a - c));
+    float longest = max(ab, max(bc, ca));
+    return longest == ab ? bc * ca : (longest == bc ? ab * ca : ab * bc);
+}
+
 #ifdef RAY_QUERY
 #include "intersect_ray_query.glsl"
 #else

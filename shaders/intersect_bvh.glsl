@@ -84,9 +84,12 @@ uint intersect_node(TraversalRay ray, float t_max, uint node, out uvec2 bases, o
 // Woop's test: an edge shared by two triangles gives the same numbers for both, so no ray slips through between them.
 bool intersect_triangle(TraversalRay ray, float t_max, uint triangle, out float t, out vec2 barycentric) {
     int base = int(triangle) * 3;
-    vec3 a = permute(uintBitsToFloat(texelFetch(triangles, base).xyz) - ray.origin, ray.axis);
-    vec3 b = permute(uintBitsToFloat(texelFetch(triangles, base + 1).xyz) - ray.origin, ray.axis);
-    vec3 c = permute(uintBitsToFloat(texelFetch(triangles, base + 2).xyz) - ray.origin, ray.axis);
+    vec3 corner_a = uintBitsToFloat(texelFetch(triangles, base).xyz);
+    vec3 corner_b = uintBitsToFloat(texelFetch(triangles, base + 1).xyz);
+    vec3 corner_c = uintBitsToFloat(texelFetch(triangles, base + 2).xyz);
+    vec3 a = permute(corner_a - ray.origin, ray.axis);
+    vec3 b = permute(corner_b - ray.origin, ray.axis);
+    vec3 c = permute(corner_c - ray.origin, ray.axis);
     precise vec2 a2 = a.xy - ray.shear.xy * a.z;
     precise vec2 b2 = b.xy - ray.shear.xy * b.z;
     precise vec2 c2 = c.xy - ray.shear.xy * c.z;
@@ -98,7 +101,15 @@ bool intersect_triangle(TraversalRay ray, float t_max, uint triangle, out float 
     float determinant = u + v + w;
     if (determinant == 0.0) return false;
     float reciprocal = 1.0 / determinant;
-    t = (u * a.z + v * b.z + w * c.z) * ray.shear.z * reciprocal;
+    float depth = (u * a.z + v * b.z + w * c.z) * reciprocal;
+    // Of a narrow triangle u, v and w are small differences of large products. Its plane is known better: by its short edges, as they are
+    // before the origin is subtracted. A ray within that plane has no one distance to it; and none lies outside the corners'.
+    vec3 n = permute(triangle_normal(corner_a, corner_b, corner_c), ray.axis);
+    float slope = dot(n, vec3(ray.shear.xy, 1.0));
+    if (abs(slope) > 1e-6 * largest(abs(n))) {
+        depth = clamp(dot(n, a) / slope, min(min(a.z, b.z), c.z), max(max(a.z, b.z), c.z));
+    }
+    t = depth * ray.shear.z;
     barycentric = vec2(v, w) * reciprocal;
     return t > 0.0 && t < t_max;
 }
@@ -142,8 +153,10 @@ bool traverse(vec3 origin, vec3 direction, float t_max, uint salt, const bool an
                 if (leaves.y != 0u) stack[depth++] = leaves;
                 object = index;
                 object_depth = depth;
+                // Relative to the object's own origin: the numbers that round are no larger than need be.
                 vec4 to_object[3] = objects[object].world_to_object;
-                ray = traversal_ray(row_dot(to_object, origin) + translation(to_object), row_dot(to_object, direction));
+                vec3 from = origin - translation(objects[object].object_to_world);
+                ray = traversal_ray(row_dot(to_object, from), row_dot(to_object, direction));
                 inner = uvec2(objects[object].root_node, 0x80000000u);
                 leaves.y = 0u;
             } else {

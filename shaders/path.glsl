@@ -18,8 +18,14 @@ Path camera_path(uvec2 pixel, uint pixel_index, uint sample_index) {
     return Path(origin, origin, direction, vec3(1.0), vec3(0.0), 0u, IMPULSE, 1.0, vec3(1.0));
 }
 
+bool is_finite(vec3 v) {
+    // By the bits: a compiler may assume that no float is infinite.
+    uvec3 exponent = floatBitsToUint(v) & 0x7f800000u;
+    return all(notEqual(exponent, uvec3(0x7f800000u)));
+}
+
 // Traces the path's ray and whatever happens at the surface it meets: once through the loop of `radiance` in the reference.
-// Returns false when the path has ended.
+// Returns false when the path has ended. Its radiance is not finite if its numbers were not.
 bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uint rays) {
     Hit hit;
     rays++;
@@ -80,6 +86,11 @@ bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uin
     if (last && LIGHT_SAMPLING == LIGHT_DIRECT && next.pdf != IMPULSE) return false;
     path.throughput *= next.weight / next.eta2;
     if (path.throughput == vec3(0.0)) return false;
+    // Such a path has not found nothing: it is lost, and has to be counted.
+    if (!is_finite(path.throughput) || !is_finite(next.wi)) {
+        path.radiance = vec3(uintBitsToFloat(0x7fc00000u));
+        return false;
+    }
     if (THRESHOLD) {
         path.albedo *= next.weight;
         if (largest(path.albedo) < frame.albedo_threshold) return false;

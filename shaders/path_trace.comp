@@ -32,39 +32,47 @@ layout(push_constant, std430) uniform Batch {
 } batch;
 
 struct PixelSum {
-    vec3 radiance;
+    float radiance[3];
     uint rays;
+    uint dropped;
 };
 layout(set = 0, binding = 7, std430) writeonly buffer Sums { PixelSum sums[]; };
-layout(set = 0, binding = 8, std430) buffer Counters { uint non_finite; };
-
-bool is_finite(vec3 v) {
-    // By the bits: a compiler may assume that no float is infinite.
-    uvec3 exponent = floatBitsToUint(v) & 0x7f800000u;
-    return all(notEqual(exponent, uvec3(0x7f800000u)));
-}
+layout(set = 0, binding = 8, std430) buffer Dropped {
+    uint count;
+    uint padding;
+    uvec2 samples[];
+} dropped;
 
 void main() {
     uvec3 id = gl_GlobalInvocationID;
     if (id.x >= batch.tile_width || id.y >= batch.tile_height) return;
     uvec2 pixel = uvec2(batch.tile_x, batch.tile_y) + id.xy;
     uint pixel_index = pixel.y * frame.width + pixel.x;
-    uint sample_index = batch.first_sample + id.z * batch.group;
-    uint end = min(sample_index + batch.group, batch.end_sample);
+    // Each z takes `group` samples of one part, which are PARTS apart.
+    uint stride = batch.group * PARTS;
+    uint first = batch.first_sample + id.z / PARTS * stride;
+    uint end = min(first + stride, batch.end_sample);
+    uint sample_index = first + id.z % PARTS;
 
     // One loop over the bounces of all samples: a lane whose path ends starts its next one while the others go on.
     vec3 sum = vec3(0.0);
     uint rays = 0u;
+    uint not_finite = 0u;
     Path path = camera_path(pixel, pixel_index, sample_index);
     while (true) {
         if (!extend_path(path, pixel_index, sample_index, rays)) {
-            if (is_finite(path.radiance)) sum += path.radiance;
-            else atomicAdd(non_finite, 1u);
-            sample_index++;
+            if (is_finite(path.radiance)) {
+                sum += path.radiance;
+            } else {
+                not_finite++;
+                uint named = atomicAdd(dropped.count, 1u);
+                if (named < dropped.samples.length()) dropped.samples[named] = uvec2(pixel_index, sample_index);
+            }
+            sample_index += PARTS;
             if (sample_index >= end) break;
             path = camera_path(pixel, pixel_index, sample_index);
         }
     }
     uint slot = (id.z * batch.tile_height + id.y) * batch.tile_width + id.x;
-    sums[slot] = PixelSum(sum, rays);
+    sums[slot] = PixelSum(float[3](sum.x, sum.y, sum.z), rays, not_finite);
 }

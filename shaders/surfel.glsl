@@ -2,7 +2,7 @@
 
 struct Surfel {
     vec3 position;
-    vec3 position_error;      // bound on the rounding of `position`, by coordinate
+    vec3 position_error;      // bound on the rounding of `position`, by coordinate; its part across the surface counts
     vec3 geometric_normal;    // unit, on the side of wo
     vec3 shading_normal;      // unit, on the side of wo
     uint material;
@@ -14,8 +14,6 @@ struct Surfel {
 float gamma(float n) { return n * 5.9604645e-8 / (1.0 - n * 5.9604645e-8); }
 
 vec3 row_abs_dot(vec4 m[3], vec3 v) { return vec3(dot(abs(m[0].xyz), v), dot(abs(m[1].xyz), v), dot(abs(m[2].xyz), v)); }
-
-float largest(vec3 v) { return max(v.x, max(v.y, v.z)); }
 
 // Normals go by the inverse transpose.
 vec3 normal_to_world(vec4 to_object[3], vec3 n) {
@@ -34,12 +32,18 @@ Surfel surfel(Hit hit, vec3 wo) {
     vec3 pb = w.x * b;
     vec3 pc = w.y * c;
     s.position = pa + pb + pc;
-    s.geometric_normal = cross(b - a, c - a);
-    // Interpolation rounds by the corners' coordinates, in each axis by itself. The intersection tests shear the triangle and
-    // mix the axes, so that their distance to its plane rounds by its size, the more the narrower it is.
+    s.geometric_normal = triangle_normal(a, b, c);
+    // Interpolation rounds by the corners' coordinates, in each axis by itself. The intersection tests mix the axes, so that their distance
+    // to the triangle's plane rounds by its size, and the more, the less certain its normal is.
     vec3 extent = abs(b - a) + abs(c - a);
     float size = largest(extent);
-    float narrow = min(size * size / largest(abs(s.geometric_normal)), 256.0);
+#ifdef RAY_QUERY
+    // How a driver computes distances is not known: as if from the triangle's area alone, which is least certain.
+    float edges = size * size;
+#else
+    float edges = shorter_edges(a, b, c);
+#endif
+    float narrow = min(edges / largest(abs(s.geometric_normal)), 256.0);
     s.position_error = gamma(7.0) * (abs(pa) + abs(pb) + abs(pc)) + gamma(4.0) * size * narrow;
     s.material = t0.w;
     if (TEXTURES) s.uv = uv_at(hit.triangle, w);
@@ -58,11 +62,20 @@ Surfel surfel(Hit hit, vec3 wo) {
         vec4 to_object[3] = objects[hit.object].world_to_object;
         vec3 p = s.position;
         s.position = row_dot(to_world, p) + translation(to_world);
-        // Rounding of this transform, and of the one back into the object's space when a ray leaves from here.
-        vec3 back = gamma(4.0) * (row_abs_dot(to_object, abs(s.position)) + abs(translation(to_object)));
-        s.position_error = row_abs_dot(to_world, s.position_error + back)
+        // Rounding of the transform back into the object's space, when a ray leaves from here.
+#ifdef RAY_QUERY
+        vec3 back = gamma(5.0) * (row_abs_dot(to_object, abs(s.position)) + abs(translation(to_object)));
+#else
+        vec3 back = gamma(5.0) * row_abs_dot(to_object, abs(s.position - translation(to_world)));
+#endif
+        // Only what is across the surface matters. A transform takes distances across a surface to such by one factor, the length that it
+        // gives to the normal; the bounds of the single coordinates would grow with its anisotropy.
+        vec3 object_normal = s.geometric_normal / largest(abs(s.geometric_normal));
+        s.geometric_normal = normal_to_world(to_object, object_normal);
+        float across = dot(abs(object_normal), s.position_error + back) / largest(abs(s.geometric_normal));
+        vec3 scaled = s.geometric_normal / largest(abs(s.geometric_normal));
+        s.position_error = across / dot(scaled, scaled) * abs(scaled)
             + gamma(4.0) * (row_abs_dot(to_world, abs(p)) + abs(translation(to_world)));
-        s.geometric_normal = normal_to_world(to_object, s.geometric_normal);
         if (VERTEX_NORMALS) n = normal_to_world(to_object, n);
         uint material = objects[hit.object].material;
         if (material != NONE) s.material = material;

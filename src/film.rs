@@ -1,6 +1,14 @@
 //! The film: what a tracer measured, added up.
 
+mod error;
+
+pub use error::{ErrorEstimate, ErrorMap, REL_MSE_FLOOR};
+
+use crate::sampling::PARTS;
 use crate::{Error, Result};
+use std::collections::BTreeMap;
+use std::iter::StepBy;
+use std::ops::Range;
 
 /// A rectangle of pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,34 +32,57 @@ impl Tile {
 
 /// Work for a tracer: the samples `samples` of every pixel of `tile`, added up in groups of `group`.
 ///
-/// Group `g` holds the samples from `samples.start + g * group`, at most `group` of them and none past `samples.end`.
+/// A group holds samples of one of the [`PARTS`] into which the samples fall, which are `PARTS` apart: group `g` those from
+/// `samples.start + g / PARTS * PARTS * group + g % PARTS`, at most `group` of them and none past `samples.end`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Batch {
     /// Which pixels.
     pub tile: Tile,
     /// Which samples of each.
-    pub samples: std::ops::Range<u32>,
+    pub samples: Range<u32>,
     /// How many samples go into one sum; at least 1.
     pub group: u32,
 }
 
 impl Batch {
-    /// Number of groups.
+    /// Number of groups: those that hold at least one sample.
     pub fn groups(&self) -> u32 {
-        (self.samples.end - self.samples.start).div_ceil(self.group)
+        let stride = u64::from(self.group) * u64::from(PARTS);
+        let samples = u64::from(self.samples.end - self.samples.start);
+        (samples / stride * u64::from(PARTS) + (samples % stride).min(u64::from(PARTS))) as u32
+    }
+
+    /// The samples of a group.
+    pub fn group_samples(&self, group: u32) -> StepBy<Range<u32>> {
+        let stride = self.group.saturating_mul(PARTS);
+        let start = self.samples.start + group / PARTS * stride;
+        let end = start.saturating_add(stride).min(self.samples.end);
+        (start + group % PARTS..end).step_by(PARTS as usize)
     }
 }
 
 /// The sum over one group of samples of one pixel.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct PixelSum {
-    /// Radiance, added up in linear RGB.
+    /// Radiance of the samples that are finite, added up in linear RGB.
     pub radiance: [f64; 3],
     /// Rays that were traced for it, of all kinds.
     pub rays: u32,
+    /// Samples that were not finite and are left out.
+    pub dropped: u32,
 }
 
-/// Everything measured so far: a sum of radiance and a number of samples for every pixel, rows from the top.
+/// One sample of one pixel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct SampleId {
+    /// Index of the pixel, `y * width + x`.
+    pub pixel: u32,
+    /// Number of the sample.
+    pub sample: u32,
+}
+
+/// Everything measured so far: for every pixel, rows from the top, the sums of the radiance over the independent parts of its samples, and
+/// how many there are.
 ///
 /// The sums are `f64`: at 1e7 samples they are right to ten digits, where `f32` sums are 9 % off.
 #[derive(Debug, Clone, PartialEq)]
@@ -60,10 +91,12 @@ pub struct Film {
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
-    /// Radiance of each pixel, added up over its samples, in linear RGB.
-    pub sum: Vec<[f64; 3]>,
-    /// Samples of each pixel. They differ between pixels where a render ended in the middle of a pass.
+    /// Radiance of each pixel in linear RGB, added up over the finite samples of each part.
+    pub sums: Vec<[[f64; 3]; PARTS as usize]>,
+    /// Samples of each pixel, from the first one. They differ between pixels where a render ended in the middle of a pass.
     pub samples: Vec<u32>,
+    /// How many of them were not finite and are left out, by pixel and part, where there are any.
+    pub dropped: BTreeMap<(usize, usize), u32>,
 }
 
 impl Film {
@@ -74,11 +107,11 @@ impl Film {
     pub fn new(width: u32, height: u32) -> Result<Self> {
         Film::check_size(width, height)?;
         let pixels = width as usize * height as usize;
-        let mut film = Film { width, height, sum: Vec::new(), samples: Vec::new() };
+        let mut film = Film { width, height, sums: Vec::new(), samples: Vec::new(), dropped: BTreeMap::new() };
         let refused = |_| too_large(width, height, "what the system would give".into());
-        film.sum.try_reserve_exact(pixels).map_err(refused)?;
+        film.sums.try_reserve_exact(pixels).map_err(refused)?;
         film.samples.try_reserve_exact(pixels).map_err(refused)?;
-        film.sum.resize(pixels, [0.0; 3]);
+        film.sums.resize(pixels, Default::default());
         film.samples.resize(pixels, 0);
         Ok(film)
     }
@@ -98,7 +131,7 @@ impl Film {
 
     /// Number of pixels.
     pub fn pixels(&self) -> usize {
-        self.sum.len()
+        self.sums.len()
     }
 
     /// Adds what a tracer measured for `batch`, in ascending order of the samples.
@@ -109,12 +142,17 @@ impl Film {
         let tile = batch.tile;
         assert_eq!(sums.len(), tile.pixels() * batch.groups() as usize, "one sum a pixel and group");
         assert!(tile.x + tile.width <= self.width && tile.y + tile.height <= self.height, "a tile inside the film");
-        for group in sums.chunks_exact(tile.pixels().max(1)) {
-            for (row, sums) in group.chunks_exact(tile.width as usize).enumerate() {
+        for (group, sums) in sums.chunks_exact(tile.pixels().max(1)).enumerate() {
+            let part = (batch.samples.start as usize + group) % PARTS as usize;
+            for (row, sums) in sums.chunks_exact(tile.width as usize).enumerate() {
                 let start = (tile.y as usize + row) * self.width as usize + tile.x as usize;
-                for (total, sum) in self.sum[start..].iter_mut().zip(sums) {
-                    for (t, s) in total.iter_mut().zip(sum.radiance) {
-                        *t += s;
+                for (column, sum) in sums.iter().enumerate() {
+                    let pixel = start + column;
+                    for (total, s) in self.sums[pixel][part].iter_mut().zip(sum.radiance) {
+                        *total += s;
+                    }
+                    if sum.dropped > 0 {
+                        *self.dropped.entry((pixel, part)).or_default() += sum.dropped;
                     }
                 }
             }
@@ -127,10 +165,19 @@ impl Film {
         }
     }
 
+    /// How many finite samples each part of a pixel has.
+    pub fn part_samples(&self, pixel: usize) -> [u32; PARTS as usize] {
+        std::array::from_fn(|part| {
+            let taken = (self.samples[pixel] + PARTS - 1 - part as u32) / PARTS;
+            if self.dropped.is_empty() { taken } else { taken - self.dropped.get(&(pixel, part)).unwrap_or(&0) }
+        })
+    }
+
     /// Mean radiance of a pixel by its index, `y * width + x`, in linear RGB; black if it has no sample.
     pub fn mean(&self, pixel: usize) -> [f64; 3] {
-        let samples = self.samples[pixel];
-        if samples == 0 { [0.0; 3] } else { self.sum[pixel].map(|s| s / f64::from(samples)) }
+        let samples: u32 = self.part_samples(pixel).iter().sum();
+        let sum = |channel: usize| self.sums[pixel].iter().map(|part| part[channel]).sum::<f64>();
+        if samples == 0 { [0.0; 3] } else { [0, 1, 2].map(|c| sum(c) / f64::from(samples)) }
     }
 
     /// Mean radiance of all pixels: linear RGB, row by row from the top.
@@ -149,8 +196,8 @@ impl Film {
     }
 }
 
-/// Bytes a pixel: 28 of the film, 12 of its linear picture, 16 for the encoders.
-const BYTES_PER_PIXEL: u64 = 56;
+/// Bytes a pixel: the film's, 24 for its linear picture and the error, 40 for the encoders.
+const BYTES_PER_PIXEL: u64 = 24 * PARTS as u64 + 4 + 24 + 40;
 
 /// Refuses a film that `available` bytes cannot hold.
 fn check_memory(width: u32, height: u32, available: Option<u64>) -> Result<()> {
@@ -185,7 +232,7 @@ mod tests {
     use super::*;
 
     fn grey(v: f64) -> PixelSum {
-        PixelSum { radiance: [v; 3], rays: 1 }
+        PixelSum { radiance: [v; 3], rays: 1, dropped: 0 }
     }
 
     #[test]
@@ -207,23 +254,51 @@ mod tests {
     fn a_batch_lands_on_its_tile() {
         let mut film = Film::new(4, 3).unwrap();
         let tile = Tile { x: 1, y: 1, width: 2, height: 2 };
-        // Samples 2 to 4 in groups of two: the second group holds one sample.
-        let batch = Batch { tile, samples: 2..5, group: 2 };
-        let sums: Vec<_> = [1.0, 2.0, 3.0, 4.0, 10.0, 20.0, 30.0, 40.0].map(grey).into();
-        film.add(&batch, &sums);
-        let sum: Vec<f64> = film.sum.iter().map(|s| s[0]).collect();
-        assert_eq!(sum, [0.0, 0.0, 0.0, 0.0, 0.0, 11.0, 22.0, 0.0, 0.0, 33.0, 44.0, 0.0]);
+        film.add(&Batch { tile, samples: 0..2, group: 1 }, &[1.0, 2.0, 3.0, 4.0, 10.0, 20.0, 30.0, 40.0].map(grey));
+        // The third sample, of the third part.
+        film.add(&Batch { tile, samples: 2..3, group: 16 }, &[100.0, 200.0, 300.0, 400.0].map(grey));
+        let sums: Vec<f64> = film.sums.iter().map(|s| s.iter().map(|part| part[0]).sum()).collect();
+        assert_eq!(sums, [0.0, 0.0, 0.0, 0.0, 0.0, 111.0, 222.0, 0.0, 0.0, 333.0, 444.0, 0.0]);
+        assert_eq!(film.sums[6].map(|part| part[1]), [2.0, 20.0, 200.0, 0.0]);
         assert_eq!(film.samples, [0, 0, 0, 0, 0, 3, 3, 0, 0, 3, 3, 0]);
-        assert_eq!(film.mean(6), [22.0 / 3.0; 3]);
+        assert_eq!(film.part_samples(5), [1, 1, 1, 0]);
+        assert_eq!(film.mean(6), [74.0; 3]);
         assert_eq!(film.to_linear()[..3], [0.0; 3]);
-        assert_eq!(film.to_linear()[3 * 5..3 * 6], [11.0 / 3.0; 3]);
+        assert_eq!(film.to_linear()[3 * 5..3 * 6], [37.0; 3]);
         assert_eq!((film.least_samples(), film.most_samples()), (0, 3));
+    }
+
+    #[test]
+    fn groups_hold_every_sample_once_and_of_one_part() {
+        let tile = Tile { x: 0, y: 0, width: 1, height: 1 };
+        for (samples, group) in [(0..4, 1), (4..71, 16), (3..11, 4), (0..1, 1), (0..2, 3), (16..16, 1), (64..257, 16)] {
+            let batch = Batch { tile, samples: samples.clone(), group };
+            let mut seen = vec![];
+            for g in 0..batch.groups() {
+                let these: Vec<u32> = batch.group_samples(g).collect();
+                assert!(!these.is_empty() && these.len() <= group as usize, "{batch:?} {g}: {these:?}");
+                assert!(these.iter().all(|s| (s - samples.start) % PARTS == g % PARTS), "{batch:?} {g}: {these:?}");
+                seen.extend(these);
+            }
+            seen.sort();
+            assert_eq!(seen, samples.clone().collect::<Vec<_>>(), "{batch:?}");
+        }
+    }
+
+    #[test]
+    fn samples_that_are_not_finite_are_left_out() {
+        let mut film = Film::new(1, 1).unwrap();
+        let tile = Tile { x: 0, y: 0, width: 1, height: 1 };
+        let sums = [grey(8.0), PixelSum { dropped: 1, ..grey(3.0) }, PixelSum { dropped: 2, ..grey(0.0) }, grey(9.0)];
+        film.add(&Batch { tile, samples: 0..8, group: 2 }, &sums);
+        assert_eq!(film.part_samples(0), [2, 1, 0, 2]);
+        assert_eq!(film.mean(0), [4.0; 3]);
     }
 
     #[test]
     fn absurd_sizes_are_refused() {
         let error = check_memory(65536, 65536, Some(8 << 30)).unwrap_err().to_string();
-        assert!(error.contains("65536 x 65536") && error.contains("224.0 GiB") && error.contains("8.0 GiB"), "{error}");
+        assert!(error.contains("65536 x 65536") && error.contains("656.0 GiB") && error.contains("8.0 GiB"), "{error}");
         assert!(check_memory(1920, 1080, Some(8 << 30)).is_ok());
     }
 }

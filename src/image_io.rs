@@ -1,8 +1,16 @@
-//! Pictures on disk: PNG to look at, EXR and HDR to compute with.
+//! Pictures on disk: PNG to look at, EXR and HDR to compute with; and reading them, and PFM, to compare.
 //!
 //! Every file is written beside its final place and renamed, so that nobody ever sees half of one.
 
-use crate::film::Film;
+pub(crate) mod image_file;
+mod openexr;
+mod pfm;
+mod picture;
+
+pub use openexr::{Attribute, Exr};
+pub use picture::{Picture, read};
+
+use crate::film::{ErrorEstimate, Film};
 use crate::{Error, Result};
 use image::{ExtendedColorType, ImageEncoder};
 use std::io::{BufWriter, Write};
@@ -13,7 +21,8 @@ use std::path::{Path, PathBuf};
 pub enum Format {
     /// 8 bits a channel, sRGB, exposed and clamped.
     Png,
-    /// OpenEXR: 32-bit floats, linear RGB; the exposure is not applied.
+    /// OpenEXR: 32-bit floats, linear RGB, with the estimated standard error of every number in the channels `error.R`, `error.G` and
+    /// `error.B`; the exposure is not applied.
     Exr,
     /// Radiance RGBE: 8 bits a channel and a common exponent (about 1 % steps), linear RGB; the exposure is not applied.
     Hdr,
@@ -82,30 +91,35 @@ pub fn save(path: &Path, film: &Film, exposure: f32) -> Result<()> {
     let format = Format::of(path)?;
     let linear = film.to_linear();
     let (width, height) = (film.width, film.height);
-    write_atomically(path, |out| {
-        let floats = bytemuck::cast_slice(&linear);
-        match format {
-            Format::Png => image::codecs::png::PngEncoder::new(out).write_image(
-                &to_srgb8(&linear, exposure),
-                width,
-                height,
-                ExtendedColorType::Rgb8,
-            ),
-            Format::Exr => {
-                // The encoder must seek, which a buffered file cannot do cheaply.
-                let mut bytes = std::io::Cursor::new(Vec::new());
-                image::codecs::openexr::OpenExrEncoder::new(&mut bytes).write_image(
-                    floats,
-                    width,
-                    height,
-                    ExtendedColorType::Rgb32F,
-                )?;
-                Ok(out.write_all(bytes.get_ref())?)
+    write_atomically(path, |out| match format {
+        Format::Png => image::codecs::png::PngEncoder::new(out).write_image(
+            &to_srgb8(&linear, exposure),
+            width,
+            height,
+            ExtendedColorType::Rgb8,
+        ),
+        Format::Exr => {
+            let errors = film.error_map();
+            let mut attributes = vec![
+                ("samplesPerPixel", Attribute::Number(f64::from(film.least_samples()))),
+                ("droppedSamples", Attribute::Number(film.dropped.values().copied().map(f64::from).sum())),
+            ];
+            if let Some(ErrorEstimate { rmse, rel_mse, fireflies }) = errors.as_ref().map(|errors| errors.total) {
+                attributes.push(("estimatedRMSE", Attribute::Number(rmse)));
+                attributes.push(("estimatedRelMSE", Attribute::Number(rel_mse)));
+                attributes.push(("fireflies", Attribute::Number(fireflies as f64)));
             }
-            Format::Hdr => {
-                image::codecs::hdr::HdrEncoder::new(out).write_image(floats, width, height, ExtendedColorType::Rgb32F)
-            }
+            let rgb = bytemuck::cast_slice(&linear);
+            let error = errors.as_ref().map(|errors| &errors.standard_error[..]);
+            let bytes = Exr { width, height, rgb, error, attributes: &attributes }.encode();
+            Ok(out.write_all(&bytes.map_err(std::io::Error::other)?)?)
         }
+        Format::Hdr => image::codecs::hdr::HdrEncoder::new(out).write_image(
+            bytemuck::cast_slice(&before_truncation(&linear)),
+            width,
+            height,
+            ExtendedColorType::Rgb32F,
+        ),
     })
 }
 
@@ -115,6 +129,17 @@ pub fn save(path: &Path, film: &Film, exposure: f32) -> Result<()> {
 /// [`Error::Write`] if the system refuses; then nothing has changed at `path`.
 pub fn save_text(path: &Path, text: &str) -> Result<()> {
     write_atomically(path, |out| out.write_all(text.as_bytes()))
+}
+
+/// Writes an 8-bit picture as a PNG.
+///
+/// # Errors
+/// [`Error::Write`] if the system refuses; then nothing has changed at `path`.
+pub fn save_png(path: &Path, picture: &image::RgbImage) -> Result<()> {
+    write_atomically(path, |out| {
+        let (width, height) = picture.dimensions();
+        image::codecs::png::PngEncoder::new(out).write_image(picture, width, height, ExtendedColorType::Rgb8)
+    })
 }
 
 /// The non-linear sRGB value of a linear one in [0, 1] (IEC 61966-2-1).
@@ -127,6 +152,21 @@ pub fn to_srgb8(linear: &[f32], exposure: f32) -> Vec<u8> {
     let scale = exposure.exp2();
     // Rust's `as` saturates, and takes NaN (0 times an infinite scale) to 0.
     linear.iter().map(|v| (255.0 * srgb((v * scale).clamp(0.0, 1.0))).round() as u8).collect()
+}
+
+/// Half a step of RGBE more of everything: the encoder truncates, which would make a picture darker by half a step in the mean (2 % in the
+/// weakest channel of the Cornell box).
+fn before_truncation(linear: &[f32]) -> Vec<f32> {
+    let more = |pixel: &[f32]| {
+        let largest = pixel.iter().copied().fold(0.0, f32::max);
+        let power = (largest.log2().floor() + 1.0).exp2();
+        let step = power / 256.0;
+        // The largest channel may be rounded up to the next power of two, where steps are twice as long.
+        let half = if largest + 0.5 * step >= power { step } else { 0.5 * step };
+        let more = |v: &f32| if largest > 0.0 && half.is_finite() { v + half } else { *v };
+        [more(&pixel[0]), more(&pixel[1]), more(&pixel[2])]
+    };
+    linear.chunks_exact(3).flat_map(more).collect()
 }
 
 /// The folder in which `path` lies.
@@ -174,9 +214,9 @@ mod tests {
     /// A film of 9 x 2 pixels with values from 0 to 1e5, two samples each.
     fn film() -> Film {
         let mut film = Film::new(9, 2).unwrap();
-        for (pixel, sum) in film.sum.iter_mut().enumerate() {
+        for (pixel, sums) in film.sums.iter_mut().enumerate() {
             let v = 10f64.powi(pixel as i32 - 12);
-            *sum = [2.0 * v, 4.0 * v, 0.0];
+            sums[1] = [2.0 * v, 4.0 * v, 0.0];
         }
         film.samples.fill(2);
         film
@@ -209,12 +249,42 @@ mod tests {
         }
     }
 
+    /// Every number is off by half a step at most, and they are right in the mean.
+    #[test]
+    fn hdr_is_rounded() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.hdr");
+        let mut film = Film::new(50, 40).unwrap();
+        for (i, sums) in film.sums.iter_mut().enumerate() {
+            let v = 0.25 * 1.000_7f64.powi(i as i32);
+            sums[0] = [v, 0.3 * v, 0.05 * v];
+        }
+        // Rounded up to the next power of two.
+        film.sums[7][0] = [0.999, 0.5, 0.003_8];
+        film.samples.fill(1);
+        save(&path, &film, 0.0).unwrap();
+        let (got, expected) = (read(&path), film.to_linear());
+        let mut off = 0.0;
+        for (got, expected) in got.chunks(3).zip(expected.chunks(3)) {
+            let step = (expected[0] * 1.002).log2().floor().exp2() / 128.0;
+            for (g, e) in got.iter().zip(expected) {
+                assert!((g - e).abs() <= 0.501 * step, "{got:?} for {expected:?}");
+            }
+            off += f64::from(got[2] - expected[2]) / f64::from(expected[2]);
+        }
+        assert!((off / 2000.0).abs() < 1e-3, "the weakest channel is off by {} in the mean", off / 2000.0);
+        // 0.0038 is just below half a step of 1/128.
+        assert_eq!(got[3 * 7..3 * 8], [1.0, 0.5, 0.0]);
+    }
+
     #[test]
     fn png_is_exposed_srgb() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.png");
         let mut film = Film::new(3, 1).unwrap();
-        film.sum = vec![[0.0, 0.001, 0.05], [0.107, 0.25, 0.5], [1.0, 7.0, -1.0]];
+        for (sums, value) in film.sums.iter_mut().zip([[0.0, 0.001, 0.05], [0.107, 0.25, 0.5], [1.0, 7.0, -1.0]]) {
+            sums[0] = value;
+        }
         film.samples.fill(1);
         save(&path, &film, 1.0).unwrap();
         // Twice the values; the expected ones are the standard's formula worked out by hand.

@@ -18,7 +18,7 @@
 //! # fn main() -> luminaire::Result<()> {
 //! let scene = scene::load(Path::new("scenes/cornell/cornell.toml"))?;
 //! let mut opened = backend::open(&scene, &backend::Request::default())?;
-//! let limits = render::Limits { spp: Some(16), seconds: None };
+//! let limits = render::Limits { spp: Some(16), seconds: None, noise: None };
 //! let size = (scene.film.width, scene.film.height);
 //! let rendered = render::render(opened.tracer.as_mut(), size, limits, &mut |_| {}, &AtomicBool::new(false))?;
 //! image_io::save(Path::new("cornell.png"), &rendered.film, scene.settings.exposure)?;

@@ -9,8 +9,10 @@ fn main() -> ExitCode {
     let args = cli::Args::parse();
     let done = match &args.command {
         cli::Command::Render(options) => cli::render::run(options),
+        cli::Command::Compare(options) => cli::compare::run(options),
         cli::Command::Devices => cli::devices::run(),
         cli::Command::Inspect(options) => cli::inspect::run(&options.scene),
+        cli::Command::Stability(options) => cli::stability::run(options),
     };
     let code = done.unwrap_or_else(|error| {
         cli::tell(&format!("error: {error}"));

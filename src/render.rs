@@ -1,24 +1,29 @@
-//! The progressive loop: batches, limits (samples, time), progress, cancellation.
+//! The progressive loop: batches, limits (samples, time, noise), progress, cancellation.
 //!
-//! Samples are summed in groups whose bounds depend on the sample's index alone: 0, 1, 2, 4, 8, 16, then every 16. A batch
-//! is one tile and some whole groups, as many as a device does in the time it asks for. How the work was cut into batches
-//! therefore never shows in the picture: the same groups are added in the same order, to the last bit.
+//! Samples are summed in groups of one part each ([`PARTS`]), whose bounds depend on the sample's index alone:
+//! within a part 0, 1, 2, 4, 8, 16, then every 16. A batch is one tile and some whole groups of every part, as many as a device does in the time it
+//! asks for. How the work was cut into batches therefore never shows in the picture: the same groups are added in the same order, to
+//! the last bit. (A limit of the noise may cut a group in two, which changes the rounding of its sum.)
 
 mod schedule;
 
-use crate::film::{Batch, Film, PixelSum};
+use crate::film::{Batch, ErrorEstimate, Film, PixelSum, SampleId};
+use crate::sampling::PARTS;
 use crate::{Error, Result};
 use schedule::{FIRST_BUDGET, Schedule, next_budget};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
+
+/// How many of the samples that were not finite are remembered.
+pub const DROPPED_NAMED: usize = 15;
 
 /// What a tracer gives back for a [`Batch`].
 #[derive(Debug, Clone, Default)]
 pub struct Traced {
     /// One sum a pixel and group: group by group, in each the tile's rows from the top.
     pub sums: Vec<PixelSum>,
-    /// Samples that were not finite and count as black; zero in a sound scene.
-    pub non_finite: u32,
+    /// Samples that were not finite and are left out, the first ones by pixel and sample; none in a sound scene.
+    pub dropped: Vec<SampleId>,
     /// Seconds that the device was busy by its own clock, if it has one.
     pub device_seconds: Option<f64>,
 }
@@ -31,7 +36,7 @@ pub trait Tracer {
     /// If the device fails.
     fn trace(&mut self, batch: &Batch) -> Result<Traced>;
 
-    /// The most sums (pixels times groups) that one batch may ask for.
+    /// The most sums (pixels times groups) that one batch may ask for; at least [`PARTS`].
     fn max_sums(&self) -> usize;
 
     /// How many seconds one batch should take: short on a GPU that also draws a desktop.
@@ -45,7 +50,13 @@ pub struct Limits {
     pub spp: Option<u32>,
     /// Seconds of wall-clock time, met at the next end of a batch.
     pub seconds: Option<f64>,
+    /// Estimated relative error ([`ErrorEstimate::relative`](crate::film::ErrorEstimate::relative)), met when all pixels have equally
+    /// many samples, at least [`LEAST_FOR_NOISE`].
+    pub noise: Option<f64>,
 }
+
+/// No noise limit is met before this many samples a pixel: fewer may all have missed the same light.
+pub const LEAST_FOR_NOISE: u32 = 8 * PARTS;
 
 /// How far a render is, told after each batch.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -60,6 +71,8 @@ pub struct Progress {
     pub seconds: f64,
     /// The limits.
     pub limits: Limits,
+    /// The error as it was estimated when all pixels last had equally many samples; at the end, that of the picture.
+    pub error: Option<ErrorEstimate>,
 }
 
 impl Progress {
@@ -77,7 +90,12 @@ impl Progress {
     pub fn fraction(&self) -> f64 {
         let by_samples = self.limits.spp.map_or(0.0, |spp| self.spp() / f64::from(spp));
         let by_time = self.limits.seconds.map_or(0.0, |seconds| self.seconds / seconds);
-        by_samples.max(by_time).min(1.0)
+        // The squared error falls with the number of samples.
+        let by_noise = match (self.limits.noise, self.error) {
+            (Some(limit), Some(error)) => (limit / error.relative()).powi(2),
+            _ => 0.0,
+        };
+        by_samples.max(by_time).max(by_noise).min(1.0)
     }
 
     /// Seconds left at the present pace, if there is a limit and any work was done.
@@ -94,6 +112,8 @@ pub enum End {
     Samples,
     /// The time was up.
     Time,
+    /// The estimated error is below the limit.
+    Noise,
     /// `stop` was set.
     Stopped,
     /// The tracer failed; what it had done before is on the film.
@@ -107,8 +127,10 @@ pub struct Rendered {
     pub film: Film,
     /// Samples, rays and seconds at the end.
     pub progress: Progress,
-    /// Samples that were not finite and count as black.
-    pub non_finite: u64,
+    /// How many samples were not finite and are left out.
+    pub dropped: u64,
+    /// Some of them, the first ones of each batch that had any; at most [`DROPPED_NAMED`].
+    pub dropped_samples: Vec<SampleId>,
     /// Seconds that the device was busy by its own clock; 0 if it has none.
     pub device_seconds: f64,
     /// Why it ended.
@@ -130,7 +152,8 @@ pub fn render(
     let mut rendered = Rendered {
         film: Film::new(width, height)?,
         progress: Progress { pixels, limits, ..Progress::default() },
-        non_finite: 0,
+        dropped: 0,
+        dropped_samples: Vec::new(),
         device_seconds: 0.0,
         end: End::Samples,
     };
@@ -159,15 +182,40 @@ pub fn render(
         let samples = batch.tile.pixels() as u64 * u64::from(batch.samples.end - batch.samples.start);
         budget = next_budget(budget, samples, seconds, tracer.batch_seconds());
         rendered.film.add(&batch, &traced.sums);
-        rendered.non_finite += u64::from(traced.non_finite);
+        rendered.dropped += traced.sums.iter().map(|s| u64::from(s.dropped)).sum::<u64>();
+        let room = DROPPED_NAMED - rendered.dropped_samples.len();
+        rendered.dropped_samples.extend(traced.dropped.iter().take(room));
         rendered.device_seconds += traced.device_seconds.unwrap_or(0.0);
         rendered.progress.samples += samples;
         rendered.progress.rays += traced.sums.iter().map(|s| u64::from(s.rays)).sum::<u64>();
         rendered.progress.seconds = start.elapsed().as_secs_f64();
+        let pass_done = schedule.pass_done();
+        if pass_done.is_some() {
+            rendered.progress.error = rendered.film.error();
+        }
         progress(&rendered.progress);
+        if let (Some(samples), Some(limit), Some(error)) = (pass_done, limits.noise, rendered.progress.error) {
+            let relative = error.relative();
+            if samples >= LEAST_FOR_NOISE && relative <= limit {
+                rendered.end = End::Noise;
+                break;
+            }
+            schedule.aim(samples_to_reach(samples, relative, limit));
+        }
     }
     rendered.progress.seconds = start.elapsed().as_secs_f64();
+    // Also of what a render did that ended in the middle of a pass.
+    rendered.progress.error = rendered.film.error();
     Ok(rendered)
+}
+
+/// How many samples to take before the error is looked at again: those that bring it from `relative` to `limit`, and a little more, but
+/// at most as many again as there are. The estimate of an error from few samples is not to be relied on.
+fn samples_to_reach(samples: u32, relative: f64, limit: f64) -> u32 {
+    let needed = f64::from(samples) * (relative / limit).powi(2);
+    let least = samples + samples / 32 + 1;
+    // Rust's `as` saturates.
+    ((1.01 * needed) as u32).clamp(least, samples.saturating_mul(2).max(least)).max(LEAST_FOR_NOISE)
 }
 
 #[cfg(test)]
@@ -201,11 +249,11 @@ mod tests {
             self.batches.push(batch.clone());
             let tile = batch.tile;
             let mut sums = Vec::new();
-            for start in batch.samples.clone().step_by(batch.group as usize) {
+            for group in 0..batch.groups() {
                 for y in tile.y..tile.y + tile.height {
                     for x in tile.x..tile.x + tile.width {
                         let mut sum = PixelSum::default();
-                        for sample in start..(start + batch.group).min(batch.samples.end) {
+                        for sample in batch.group_samples(group) {
                             let [r, g, b, e] = random4(y * self.width + x, sample, 0, 1);
                             let scale = 10f64.powi((e % 16) as i32 - 8);
                             for (s, v) in sum.radiance.iter_mut().zip([r, g, b]) {
@@ -218,7 +266,7 @@ mod tests {
                 }
             }
             let samples = tile.pixels() as u32 * (batch.samples.end - batch.samples.start);
-            Ok(Traced { sums, non_finite: 1, device_seconds: Some(f64::from(samples) * self.sample_seconds) })
+            Ok(Traced { sums, dropped: vec![], device_seconds: Some(f64::from(samples) * self.sample_seconds) })
         }
 
         fn max_sums(&self) -> usize {
@@ -231,7 +279,7 @@ mod tests {
     }
 
     fn run(fake: &mut Fake, size: (u32, u32), spp: u32) -> Rendered {
-        let limits = Limits { spp: Some(spp), seconds: None };
+        let limits = Limits { spp: Some(spp), seconds: None, noise: None };
         render(fake, size, limits, &mut |_| {}, &AtomicBool::new(false)).unwrap()
     }
 
@@ -241,14 +289,13 @@ mod tests {
         let mut films = Vec::new();
         // From one pixel at a time to everything at once; 71 samples end in the middle of a group.
         for (max_sums, seconds) in
-            [(1, 1.0), (5, 1e-5), (64, 1.0), (10_000_000, 1e-4), (10_000_000, 3e-3), (10_000_000, 1e9)]
+            [(4, 1.0), (5, 1e-5), (64, 1.0), (10_000_000, 1e-4), (10_000_000, 3e-3), (10_000_000, 1e9)]
         {
             let mut fake = Fake::new(size.0, max_sums, seconds);
             let rendered = run(&mut fake, size, 71);
             assert!(matches!(rendered.end, End::Samples));
             assert!(rendered.film.samples.iter().all(|s| *s == 71));
             assert_eq!(rendered.progress.rays, 37 * 23 * 71 * 2);
-            assert_eq!(rendered.non_finite, fake.batches.len() as u64);
             films.push(rendered.film);
         }
         assert!(films.iter().all(|film| *film == films[0]));
@@ -257,7 +304,7 @@ mod tests {
     #[test]
     fn every_pixel_once_per_group_within_the_limits() {
         for (size, max_sums, seconds) in
-            [((37, 23), 100, 1e-3), ((5000, 3), 1 << 20, 1e-3), ((1, 1), 1, 1.0), ((8, 600), 1 << 20, 1e-2)]
+            [((37, 23), 100, 1e-3), ((5000, 3), 1 << 20, 1e-3), ((1, 1), 4, 1.0), ((8, 600), 1 << 20, 1e-2)]
         {
             let mut fake = Fake::new(size.0, max_sums, seconds);
             run(&mut fake, size, 100);
@@ -300,7 +347,7 @@ mod tests {
     #[test]
     fn time_ends_at_a_batch() {
         let mut fake = Fake::new(64, 1 << 20, 0.001);
-        let limits = Limits { spp: None, seconds: Some(0.05) };
+        let limits = Limits { spp: None, seconds: Some(0.05), noise: None };
         let mut calls = 0;
         let rendered = render(&mut fake, (64, 64), limits, &mut |_| calls += 1, &AtomicBool::new(false)).unwrap();
         assert!(matches!(rendered.end, End::Time));
@@ -313,12 +360,12 @@ mod tests {
     fn stop_keeps_what_was_done() {
         let mut fake = Fake::new(64, 4096, 1e-3);
         let stop = AtomicBool::new(false);
-        let limits = Limits { spp: Some(1000), seconds: None };
-        let mut until_three = |p: &Progress| stop.store(p.samples >= 3 * 4096, Ordering::Relaxed);
+        let limits = Limits { spp: Some(1000), seconds: None, noise: None };
+        let mut until_three = |p: &Progress| stop.store(p.samples >= 3 * 4096 * 4, Ordering::Relaxed);
         let rendered = render(&mut fake, (64, 64), limits, &mut until_three, &stop).unwrap();
         assert!(matches!(rendered.end, End::Stopped));
-        assert!(rendered.progress.samples >= 3 * 4096 && rendered.progress.samples < 1000 * 4096);
-        assert!(rendered.film.least_samples() >= 1);
+        assert!(rendered.progress.samples >= 3 * 4096 * 4 && rendered.progress.samples < 1000 * 4096);
+        assert!(rendered.film.least_samples() >= 4);
     }
 
     #[test]
@@ -326,13 +373,13 @@ mod tests {
         let mut fake = Fake { fail_at: Some(1), ..Fake::new(64, 2048, 1.0) };
         let rendered = run(&mut fake, (64, 64), 4);
         assert!(matches!(rendered.end, End::Failed(Error::NoDevice(_))));
-        assert_eq!((rendered.film.least_samples(), rendered.film.most_samples()), (0, 1));
+        assert_eq!((rendered.film.least_samples(), rendered.film.most_samples()), (0, 4));
     }
 
     #[test]
     fn progress_by_the_nearer_limit() {
-        let limits = Limits { spp: Some(10), seconds: Some(100.0) };
-        let progress = Progress { samples: 500, pixels: 100, rays: 4_000_000, seconds: 2.0, limits };
+        let limits = Limits { spp: Some(10), seconds: Some(100.0), noise: None };
+        let progress = Progress { samples: 500, pixels: 100, rays: 4_000_000, seconds: 2.0, limits, error: None };
         assert_eq!(progress.fraction(), 0.5);
         assert_eq!(progress.seconds_left(), Some(2.0));
         assert_eq!(progress.mrays_per_second(), 2.0);

@@ -1,11 +1,14 @@
 //! Arguments and the manner of speaking: results on stdout, everything else on stderr.
 
+pub mod compare;
 pub mod devices;
 mod estimator;
 pub mod inspect;
 mod inspect_tables;
 mod progress;
 pub mod render;
+mod replay;
+pub mod stability;
 mod stats;
 #[cfg(feature = "shaderc")]
 mod watch;
@@ -27,8 +30,10 @@ const EXAMPLES: &str = "\
 Examples:
   luminaire render scenes/cornell/cornell.toml
   luminaire render model.obj -o model.png -o model.exr --spp 256
+  luminaire compare model.exr reference.exr
   luminaire inspect model.obj
   luminaire devices
+  luminaire stability --list
 
 ";
 
@@ -40,8 +45,32 @@ Examples:
       two files of one render; the height follows from the scene's aspect ratio
   luminaire render model.obj --time 30 --backend compute-bvh --stats run.json
       as many samples as 30 seconds allow, and the figures of the run
+  luminaire render model.obj --noise 0.02 --time 600 --error-map noise.png
+      until the estimated error is 2 %, but no longer than ten minutes; and where it is how large
 
 ";
+
+const COMPARE_EXAMPLES: &str = "\
+Examples:
+  luminaire compare cornell.exr reference.exr
+      how far they are apart: RMSE, relMSE, bias, FLIP, and the worst pixels
+  luminaire compare cornell.exr reference.exr --heatmap error.png
+      and a picture of where
+  luminaire compare cornell.exr reference.exr --max-relmse 0.01 --max-bias 0.005 && echo good enough
+      as a test: relMSE at most 0.01, and no channel's mean off by more than 0.5 %
+
+Exit codes:
+  0  compared; every limit that was given is kept
+  1  a limit is exceeded, pixels of IMAGE are not finite, or a file cannot be read or written
+  2  wrong usage: an option, or pictures of different sizes";
+
+const STABILITY_HELP: &str = "\
+Examples:
+  luminaire stability --list
+  luminaire stability samples albedo
+  luminaire stability --out docs/stability --page docs/stability.md
+
+Without a Vulkan device the reference runs alone. Exit code 1 if a sweep failed; the others are written nevertheless.";
 
 /// A path tracer on Vulkan: ray queries or a compute-shader BVH, with a double-precision reference.
 #[derive(Debug, clap::Parser)]
@@ -55,11 +84,36 @@ pub struct Args {
 pub enum Command {
     /// Render a scene to PNG, EXR or HDR files.
     Render(RenderOptions),
+    /// Tell how far a picture is from a reference, and whether that is within limits.
+    Compare(CompareOptions),
     /// List every Vulkan device, what it offers, and which backend it would run and why.
     #[command(after_help = "Exit code 0 if at least one device is usable, 1 if none is.")]
     Devices,
     /// Show what was loaded from a scene, and every warning.
     Inspect(InspectOptions),
+    /// Run methods over the ranges in which they can fail, on every backend here: charts, numbers, and a page.
+    Stability(StabilityOptions),
+}
+
+/// Which sweeps to run, and where their files go.
+#[derive(Debug, clap::Args)]
+#[command(after_help = STABILITY_HELP)]
+pub struct StabilityOptions {
+    /// Names of sweeps, as `--list` tells them [default: all].
+    #[arg(value_name = "SWEEP")]
+    pub sweeps: Vec<String>,
+    /// The folder for <SWEEP>.csv and <SWEEP>-<CHART>.svg; it is made if it is missing [default: stability].
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// The page that shows and explains the charts, in Markdown [default: README.md in the folder].
+    #[arg(long, value_name = "FILE")]
+    pub page: Option<PathBuf>,
+    /// Finer steps and more samples: about ten times as long.
+    #[arg(long)]
+    pub long: bool,
+    /// List the sweeps, and run none.
+    #[arg(long)]
+    pub list: bool,
 }
 
 /// What to inspect.
@@ -67,6 +121,43 @@ pub enum Command {
 pub struct InspectOptions {
     /// A scene file (.toml) or any OBJ file.
     pub scene: PathBuf,
+}
+
+/// What to compare, and within which limits.
+#[derive(Debug, clap::Args)]
+#[command(after_help = COMPARE_EXAMPLES)]
+pub struct CompareOptions {
+    /// The picture: EXR, PFM, HDR, PNG and most others.
+    pub image: PathBuf,
+    /// What is right, or held to be.
+    pub reference: PathBuf,
+
+    /// Fail above this root-mean-square error, in units of the pictures.
+    #[arg(long, value_name = "X", allow_negative_numbers = true, value_parser = limit, help_heading = "Limits")]
+    pub max_rmse: Option<f64>,
+    /// Fail above this relMSE, the mean of (a - b)^2 / (b^2 + 0.01).
+    #[arg(long, value_name = "X", allow_negative_numbers = true, value_parser = limit, help_heading = "Limits")]
+    pub max_relmse: Option<f64>,
+    /// Fail if the mean of a channel is off by more than this part of the reference's; 0.01 is 1 %.
+    #[arg(long, value_name = "X", allow_negative_numbers = true, value_parser = limit, help_heading = "Limits")]
+    pub max_bias: Option<f64>,
+    /// Fail above this mean FLIP, from 0 (they look the same) to 1.
+    #[arg(long, value_name = "X", allow_negative_numbers = true, value_parser = limit, help_heading = "Limits")]
+    pub max_flip: Option<f64>,
+
+    /// Take FLIP as the pictures look in a PNG of this exposure [default: over all exposures that show something; 0 if a picture holds
+    /// whole numbers].
+    #[arg(long, value_name = "STOPS", allow_negative_numbers = true, value_parser = stops)]
+    pub exposure: Option<f32>,
+    /// How many of the worst pixels to list.
+    #[arg(long, value_name = "N", default_value_t = 5, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(..=100_000), help_heading = "Output")]
+    pub worst: u32,
+    /// Write a picture of the relative error of every pixel, with its scale.
+    #[arg(long, value_name = "FILE.png", help_heading = "Output")]
+    pub heatmap: Option<PathBuf>,
+    /// Write the figures to a JSON file.
+    #[arg(long, value_name = "FILE.json", help_heading = "Output")]
+    pub stats: Option<PathBuf>,
 }
 
 /// What to render, and how.
@@ -82,6 +173,9 @@ pub struct RenderOptions {
     /// Exposure of a PNG in stops: radiance times 2^STOPS [default: the scene's].
     #[arg(long, value_name = "STOPS", allow_negative_numbers = true, value_parser = stops, help_heading = "Output")]
     pub exposure: Option<f32>,
+    /// Write a heat map of the estimated relative error of every pixel.
+    #[arg(long, value_name = "FILE.png", help_heading = "Output")]
+    pub error_map: Option<PathBuf>,
     /// Write the figures of the run to a JSON file.
     #[arg(long, value_name = "FILE.json", help_heading = "Output")]
     pub stats: Option<PathBuf>,
@@ -89,12 +183,16 @@ pub struct RenderOptions {
     #[arg(long, help_heading = "Output")]
     pub quiet: bool,
 
-    /// Samples a pixel [default: the scene's, unless there is --time].
+    /// Samples a pixel [default: the scene's, unless there is --time or --noise].
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..), help_heading = "Quality")]
     pub spp: Option<u32>,
     /// Stop rendering after so many seconds; with --spp, whichever comes first.
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = seconds, help_heading = "Quality")]
     pub time: Option<f64>,
+    /// Stop when the estimated relative error (the root of relMSE) is below E, for example 0.02; with --spp and --time, whichever
+    /// comes first.
+    #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = noise, help_heading = "Quality")]
+    pub noise: Option<f64>,
     /// Width in pixels [default: the scene's, or from --height at the scene's aspect ratio].
     #[arg(long, value_name = "PIXELS", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=65536), help_heading = "Quality")]
     pub width: Option<u32>,
@@ -106,6 +204,13 @@ pub struct RenderOptions {
     pub seed: Option<u32>,
     #[command(flatten)]
     pub estimator: estimator::EstimatorOptions,
+
+    /// Trace one sample of one pixel again and print its path, instead of rendering; with --sample.
+    #[arg(long, value_name = "X,Y", value_parser = pixel, requires = "sample", help_heading = "Replay")]
+    pub pixel: Option<[u32; 2]>,
+    /// The number of the sample that --pixel traces.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..i64::from(u32::MAX)), requires = "pixel", help_heading = "Replay")]
+    pub sample: Option<u32>,
 
     /// Render again whenever a shader changes (the sources are in LUMINAIRE_SHADERS, or where the program was built).
     #[cfg(feature = "shaderc")]
@@ -148,6 +253,28 @@ fn seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(seconds) if seconds > 0.0 && seconds.is_finite() => Ok(seconds),
         _ => Err("expected a number of seconds above 0, for example 30 or 0.5".into()),
+    }
+}
+
+fn noise(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(noise) if noise > 0.0 && noise.is_finite() => Ok(noise),
+        _ => Err("expected a relative error above 0, for example 0.02 for 2 %".into()),
+    }
+}
+
+fn pixel(text: &str) -> Result<[u32; 2], String> {
+    let number = |text: &str| text.trim().parse::<u32>().ok();
+    match text.split_once(',').map(|(x, y)| (number(x), number(y))) {
+        Some((Some(x), Some(y))) => Ok([x, y]),
+        _ => Err("expected column and row of a pixel, counted from 0 at the upper left, for example 12,40".into()),
+    }
+}
+
+fn limit(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(limit) if limit >= 0.0 && limit.is_finite() => Ok(limit),
+        _ => Err("expected a number from 0, for example 0.01".into()),
     }
 }
 
@@ -206,6 +333,10 @@ mod tests {
             ["--time", "0"],
             ["--time", "nan"],
             ["--time", "inf"],
+            ["--noise", "0"],
+            ["--noise", "nan"],
+            ["--pixel", "1"],
+            ["--pixel", "1,-1"],
             ["--width", "0"],
             ["--height", "65537"],
             ["--seed", "-1"],

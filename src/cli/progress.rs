@@ -64,7 +64,15 @@ impl Reporter {
 fn describe(progress: &Progress) -> String {
     let of = progress.limits.spp.map_or(String::new(), |spp| format!(" of {spp}"));
     let left = progress.seconds_left().map_or(String::new(), |seconds| format!(", {} left", duration(seconds)));
-    format!("{:.1}{of} samples a pixel, {:.2} Mrays/s{left}", progress.spp(), progress.mrays_per_second())
+    let error = progress.error.map_or(String::new(), |error| format!(", error {}", percent(error.relative())));
+    format!("{:.1}{of} samples a pixel, {:.2} Mrays/s{error}{left}", progress.spp(), progress.mrays_per_second())
+}
+
+/// A share in per cent, with two digits that count.
+pub fn percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    let digits = if percent > 0.0 { (1.0 - percent.log10().floor()).clamp(0.0, 6.0) as usize } else { 0 };
+    format!("{percent:.digits$} %")
 }
 
 /// Seconds in words: `0.42 s`, `42 s`, `3 min 5 s`, `2 h 10 min`.
@@ -83,13 +91,20 @@ pub fn duration(seconds: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use luminaire::film::ErrorEstimate;
     use luminaire::render::Limits;
 
     #[test]
     fn words() {
         assert_eq!([0.42, 42.4, 185.0, 7800.0].map(duration), ["0.42 s", "42 s", "3 min 5 s", "2 h 10 min"]);
-        let limits = Limits { spp: Some(64), seconds: None };
-        let progress = Progress { samples: 1600, pixels: 100, rays: 6_000_000, seconds: 2.0, limits };
+        let limits = Limits { spp: Some(64), seconds: None, noise: None };
+        let progress = Progress { samples: 1600, pixels: 100, rays: 6_000_000, seconds: 2.0, limits, error: None };
         assert_eq!(describe(&progress), "16.0 of 64 samples a pixel, 3.00 Mrays/s, 6.00 s left");
+        let error = Some(ErrorEstimate { rmse: 0.1, rel_mse: 0.0625, fireflies: 0 });
+        let limits = Limits { noise: Some(0.125), ..limits };
+        let with_error = Progress { limits, error, ..progress };
+        assert_eq!(describe(&with_error), "16.0 of 64 samples a pixel, 3.00 Mrays/s, error 25 %, 6.00 s left");
+        let words = [0.0, 0.000_123, 0.0123, 0.0999, 0.123, 4.56].map(percent);
+        assert_eq!(words, ["0 %", "0.012 %", "1.2 %", "10.0 %", "12 %", "456 %"]);
     }
 }

@@ -1,14 +1,15 @@
 //! `luminaire render`.
 
-use super::progress::{Reporter, duration};
+use super::progress::{Reporter, duration, percent};
 use super::stats::{Seconds, Stats};
 use super::{RenderOptions, print, tell};
 use luminaire::backend::{self, Backend, Opened, Request};
 use luminaire::film::Film;
+use luminaire::measure::heat_map;
 use luminaire::render::{End, Limits, Rendered, render};
 use luminaire::scene::{self, FilmSettings, Scene};
 use luminaire::{Error, Result, image_io};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
@@ -33,7 +34,7 @@ pub fn run(options: &RenderOptions) -> Result<ExitCode> {
         }
     };
     check_combinations(options)?;
-    let outputs = outputs(options)?;
+    let outputs = if options.pixel.is_some() { vec![] } else { outputs(options)? };
     listen_for_interrupts(options.quiet)?;
 
     let mut seconds = Seconds::default();
@@ -45,6 +46,10 @@ pub fn run(options: &RenderOptions) -> Result<ExitCode> {
     scene.settings.seed = options.seed.unwrap_or(scene.settings.seed);
     scene.settings.exposure = options.exposure.unwrap_or(scene.settings.exposure);
     Film::check_size(scene.film.width, scene.film.height)?;
+    let FilmSettings { width, height, .. } = scene.film;
+    if let Some([x, y]) = options.pixel.filter(|[x, y]| *x >= width || *y >= height) {
+        return Err(Error::Usage(format!("--pixel {x},{y} is not on the film, which has {width} x {height} pixels")));
+    }
     scene.warnings.iter().for_each(|warning| say(&format!("warning: {warning}")));
 
     #[cfg(feature = "shaderc")]
@@ -71,8 +76,12 @@ fn trace(
     let driver = if opened.driver.is_empty() { String::new() } else { format!(", {}", opened.driver) };
     say(&format!("{notice}{} on {}{driver}: {}", opened.backend, opened.device, opened.why));
 
-    let scene_spp = options.time.is_none().then_some(scene.settings.spp);
-    let limits = Limits { spp: options.spp.or(scene_spp), seconds: options.time };
+    if let (Some(pixel), Some(sample)) = (options.pixel, options.sample) {
+        return super::replay::run(scene, &mut opened, pixel, sample);
+    }
+    let other_limit = options.time.is_some() || options.noise.is_some();
+    let scene_spp = (!other_limit).then_some(scene.settings.spp);
+    let limits = Limits { spp: options.spp.or(scene_spp), seconds: options.time, noise: options.noise };
     let mut reporter = Reporter::new(options.quiet);
     RENDERING.store(true, Ordering::SeqCst);
     let size = (scene.film.width, scene.film.height);
@@ -93,8 +102,14 @@ fn finish(
     outputs: &[PathBuf],
     say: &dyn Fn(&str),
 ) -> Result<ExitCode> {
-    if rendered.non_finite > 0 {
-        say(&format!("warning: {} samples were not finite and count as black", rendered.non_finite));
+    if let Some(first) = rendered.dropped_samples.first() {
+        say(&format!(
+            "warning: {} samples were not finite and are left out; the first is replayed by --pixel {},{} --sample {}",
+            rendered.dropped,
+            first.pixel % scene.film.width,
+            first.pixel / scene.film.width,
+            first.sample
+        ));
     }
     let written = if rendered.progress.samples > 0 { outputs } else { &[] };
     let black = rendered.film.samples.iter().filter(|samples| **samples == 0).count();
@@ -106,10 +121,10 @@ fn finish(
     WRITING.store(false, Ordering::SeqCst);
     done?;
     if !options.quiet {
-        print(&summary(&rendered, seconds, written, options.stats.as_deref()))?;
+        print(&summary(options, &rendered, seconds, written))?;
     }
     match rendered.end {
-        End::Samples | End::Time => Ok(ExitCode::SUCCESS),
+        End::Samples | End::Time | End::Noise => Ok(ExitCode::SUCCESS),
         End::Stopped => {
             say(if written.is_empty() {
                 "interrupted before the first sample; no picture is written"
@@ -141,6 +156,11 @@ fn write(
     let saved: Vec<_> =
         written.iter().map(|path| image_io::save(path, &rendered.film, scene.settings.exposure)).collect();
     saved.into_iter().collect::<Result<()>>()?;
+    if let (Some(path), Some(errors)) = (&options.error_map, rendered.film.error_map()) {
+        let FilmSettings { width, height, .. } = scene.film;
+        let [low, high] = heat_map::RELATIVE_ERRORS;
+        image_io::save_png(path, &heat_map::heat_map(width, height, &errors.relative, low, high))?;
+    }
     seconds.write = start.elapsed().as_secs_f64();
     if let Some(path) = &options.stats {
         let stats = Stats::new(scene, opened, rendered, *seconds, written);
@@ -151,18 +171,35 @@ fn write(
 }
 
 /// Where the files are, how long it took, and how fast it was.
-fn summary(rendered: &Rendered, seconds: Seconds, written: &[PathBuf], stats: Option<&Path>) -> String {
+fn summary(options: &RenderOptions, rendered: &Rendered, seconds: Seconds, written: &[PathBuf]) -> String {
+    let progress = &rendered.progress;
     let film = &rendered.film;
     let (least, most) = (film.least_samples(), film.most_samples());
     let spp = if least == most { least.to_string() } else { format!("{least} to {most}") };
+    let ended = match rendered.end {
+        End::Time => ", ended by --time",
+        End::Noise => ", ended by --noise",
+        End::Samples | End::Stopped | End::Failed(_) => "",
+    };
     let mut text = String::new();
     for path in written {
-        text += &format!("{}: {} x {} pixels, {spp} samples a pixel\n", path.display(), film.width, film.height);
+        text += &format!("{}: {} x {} pixels, {spp} samples a pixel{ended}\n", path.display(), film.width, film.height);
     }
-    if let Some(path) = stats {
+    if let Some(path) = options.error_map.as_ref().filter(|_| progress.error.is_some()) {
+        text +=
+            &format!("{}: estimated relative error of every pixel, 0.1 % (black) to 100 % (white)\n", path.display());
+    }
+    if let Some(path) = &options.stats {
         text += &format!("{}: the figures of this run\n", path.display());
     }
-    let progress = &rendered.progress;
+    if let Some(error) = progress.error {
+        text += &format!("estimated error {} (RMSE {:.3e})", percent(error.relative()), error.rmse);
+        text += &match error.fireflies {
+            0 => "\n".into(),
+            1 => ", without 1 pixel that is a firefly or a very small lamp\n".into(),
+            n => format!(", without {n} pixels that are fireflies or very small lamps\n"),
+        };
+    }
     text += &format!(
         "load {}, build {}, render {}; {:.2} Mrays/s, {:.3} million samples/s\n",
         duration(seconds.load),
@@ -198,6 +235,12 @@ fn outputs(options: &RenderOptions) -> Result<Vec<PathBuf>> {
             return Err(Error::Usage(format!("-o {} is given twice", path.display())));
         }
         image_io::check_output(path)?;
+    }
+    if let Some(path) = &options.error_map {
+        if image_io::Format::of(path)? != image_io::Format::Png {
+            return Err(Error::Usage(format!("--error-map {}: the name must end in .png", path.display())));
+        }
+        image_io::check_writable(path)?;
     }
     if let Some(path) = &options.stats {
         if path.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("json")) {

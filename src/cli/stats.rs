@@ -22,6 +22,17 @@ pub struct Seconds {
     pub write: f64,
 }
 
+/// The estimated error.
+#[derive(Debug, Clone, Copy, Serialize)]
+struct ErrorFigures {
+    /// The root of `rel_mse`: what `--noise` bounds.
+    relative: f64,
+    rel_mse: f64,
+    rmse: f64,
+    /// Pixels that are left out of it.
+    fireflies: u64,
+}
+
 /// What `--stats` writes.
 #[derive(Debug, Serialize)]
 pub struct Stats<'a> {
@@ -30,7 +41,7 @@ pub struct Stats<'a> {
     triangles: u64,
     width: u32,
     height: u32,
-    /// "samples" or "time": a limit was met; "interrupted"; "failed".
+    /// "samples", "time" or "noise": a limit was met; "interrupted"; "failed".
     end: &'static str,
     spp_least: u32,
     spp_most: u32,
@@ -40,11 +51,13 @@ pub struct Stats<'a> {
     driver: &'a str,
     why: &'a str,
     seconds: Seconds,
+    /// Estimated, without fireflies; none if there are too few samples.
+    error: Option<ErrorFigures>,
     samples: u64,
     rays: u64,
     mrays_per_second: f64,
     samples_per_second: f64,
-    non_finite: u64,
+    dropped: u64,
     outputs: Vec<String>,
     warnings: &'a [String],
 }
@@ -68,6 +81,7 @@ impl<'a> Stats<'a> {
             end: match rendered.end {
                 End::Samples => "samples",
                 End::Time => "time",
+                End::Noise => "noise",
                 End::Stopped => "interrupted",
                 End::Failed(_) => "failed",
             },
@@ -79,11 +93,17 @@ impl<'a> Stats<'a> {
             driver: &opened.driver,
             why: &opened.why,
             seconds,
+            error: progress.error.map(|e| ErrorFigures {
+                relative: e.relative(),
+                rel_mse: e.rel_mse,
+                rmse: e.rmse,
+                fireflies: e.fireflies,
+            }),
             samples: progress.samples,
             rays: progress.rays,
             mrays_per_second: progress.mrays_per_second(),
             samples_per_second: if progress.seconds > 0.0 { progress.samples as f64 / progress.seconds } else { 0.0 },
-            non_finite: rendered.non_finite,
+            dropped: rendered.dropped,
             outputs: outputs.iter().map(|path| path.display().to_string()).collect(),
             warnings: &scene.warnings,
         }

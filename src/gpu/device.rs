@@ -117,6 +117,11 @@ impl Device {
         self.acceleration_structure.as_ref().expect("the device was opened with ray query")
     }
 
+    /// Bytes of device memory that everything alive on this device holds.
+    pub fn allocated_bytes(&self) -> u64 {
+        self.allocator().generate_report().total_allocated_bytes
+    }
+
     pub(super) fn allocator(&self) -> MutexGuard<'_, Allocator> {
         self.allocator.lock().unwrap_or_else(PoisonError::into_inner)
     }

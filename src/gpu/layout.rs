@@ -15,6 +15,7 @@ pub const STRUCTS: &[(&str, usize, &[Member])] = &[
     ("Luminaire", size_of::<Luminaire>(), Luminaire::MEMBERS),
     ("Batch", size_of::<Batch>(), Batch::MEMBERS),
     ("PixelSum", size_of::<PixelSum>(), PixelSum::MEMBERS),
+    ("Dropped", size_of::<Dropped>(), Dropped::MEMBERS),
     ("Call", size_of::<Call>(), Call::MEMBERS),
 ];
 
@@ -169,10 +170,24 @@ shared! {
 shared! {
     /// What the path tracer writes for a pixel and group (binding 7).
     PixelSum {
-        /// Radiance, added up.
+        /// Radiance, added up over the finite samples.
         radiance: [f32; 3],
         /// Rays traced.
         rays: u32,
+        /// Samples that were not finite.
+        dropped: u32,
+    }
+}
+
+shared! {
+    /// Samples of a batch that were not finite (binding 8).
+    Dropped {
+        /// How many.
+        count: u32,
+        /// To a multiple of 8 bytes.
+        padding: u32,
+        /// Index of the pixel and of the sample, of as many as there is room for.
+        samples: [[u32; 2]; 15],
     }
 }
 

@@ -248,7 +248,7 @@ fn pairs(mut halves: Vec<[u32; 2]>) -> Vec<[u32; 4]> {
 }
 
 /// How far a point that the kernel computes on an emissive triangle can lie from the surface that rays meet, in each
-/// coordinate: the bounds of `shaders/surfel.glsl`, taken over the whole triangle. They are the rounding of the point itself, of
+/// coordinate, so far as it lies across the surface: the bounds of `shaders/surfel.glsl`, taken over the whole triangle. They are the rounding of the point itself, of
 /// the triangle test (by the triangle's size, and the more the narrower it is), and of the transforms.
 fn position_error(scene: &Scene, triangle: &EmissiveTriangle) -> f64 {
     let gamma = |n: f64| n * f64::from(f32::EPSILON) * 0.5;
@@ -261,12 +261,19 @@ fn position_error(scene: &Scene, triangle: &EmissiveTriangle) -> f64 {
     let narrow = (size * size / (b - a).cross(c - a).abs().max_element()).min(256.0);
     let to_world = widen(object.object_to_world);
     let largest = |points: [DVec3; 3]| points.iter().fold(DVec3::ZERO, |m, v| m.max(v.abs()));
-    let mut error = gamma(4.0) * largest(triangle.vertices);
-    error += absolute(to_world.matrix3) * (gamma(7.0) * largest(corners) + gamma(4.0) * size * narrow);
+    let reach = largest(triangle.vertices);
+    let mut in_object = gamma(7.0) * largest(corners) + gamma(4.0) * size * narrow;
+    let mut in_world = gamma(4.0) * reach;
     if to_world != DAffine3::IDENTITY {
         let to_object = to_world.inverse();
-        let back = absolute(to_object.matrix3) * largest(triangle.vertices) + to_object.translation.abs();
-        error += gamma(8.0) * (absolute(to_world.matrix3) * back + to_world.translation.abs());
+        in_object += gamma(5.0) * (absolute(to_object.matrix3) * reach + to_object.translation.abs());
+        in_world += gamma(4.0) * (absolute(to_world.matrix3) * largest(corners) + to_world.translation.abs());
     }
-    error.max_element()
+    // Only what is across the triangle matters, and a transform takes distances across it to such by one factor.
+    let object_normal = (b - a).cross(c - a).normalize();
+    let normal = to_world.matrix3.inverse().transpose() * object_normal;
+    let unit = normal.normalize().abs();
+    let across = object_normal.abs().dot(in_object) / normal.length() + unit.dot(in_world);
+    // As the same number for each coordinate, of which the kernel takes the part across the triangle.
+    across / unit.element_sum()
 }

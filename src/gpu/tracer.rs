@@ -6,24 +6,26 @@ use super::scene::GpuScene;
 use super::shader::Shader;
 use super::{Buffer, Device, Kernel, layout};
 use crate::Result;
-use crate::film::{Batch, PixelSum};
+use crate::film::{Batch, PixelSum, SampleId};
 use crate::render::{Traced, Tracer};
 use crate::scene::Scene;
 use ash::vk;
 use gpu_allocator::MemoryLocation;
 use std::sync::Arc;
 
-/// The most sums of one batch: 16 MiB of results.
+/// The most sums of one batch: 20 MiB of results.
 const MAX_SUMS: usize = 1 << 20;
 /// Workgroups are 8 x 8 pixels (`shaders/path_trace.comp`).
 const WORKGROUP: u32 = 8;
+const DROPPED_SIZE: usize = size_of::<layout::Dropped>();
+
 /// Traces batches on a Vulkan device.
 pub struct GpuTracer {
     // Dropped before what it is bound to.
     kernel: Kernel,
     _scene: GpuScene,
     sums: Buffer,
-    counters: Buffer,
+    dropped: Buffer,
     readback: Buffer,
     device: Arc<Device>,
 }
@@ -53,19 +55,25 @@ impl GpuTracer {
         let size = (MAX_SUMS * size_of::<layout::PixelSum>()) as u64;
         let result = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::TRANSFER_SRC;
         let sums = Buffer::new(device, "sums", size, result, MemoryLocation::GpuOnly)?;
-        let counters =
-            Buffer::new(device, "counters", 16, result | vk::BufferUsageFlags::TRANSFER_DST, MemoryLocation::GpuOnly)?;
-        // The counters come back behind the sums.
-        let readback =
-            Buffer::new(device, "readback", size + 16, vk::BufferUsageFlags::TRANSFER_DST, MemoryLocation::GpuToCpu)?;
+        let dropped_usage = result | vk::BufferUsageFlags::TRANSFER_DST;
+        let dropped = Buffer::new(device, "dropped", DROPPED_SIZE as u64, dropped_usage, MemoryLocation::GpuOnly)?;
+        // The samples that were not finite come back behind the sums.
+        let readback_size = size + DROPPED_SIZE as u64;
+        let readback = Buffer::new(
+            device,
+            "readback",
+            readback_size,
+            vk::BufferUsageFlags::TRANSFER_DST,
+            MemoryLocation::GpuToCpu,
+        )?;
         let kernel = Kernel::new(
             device,
             Shader::path_trace(ray_query),
             &gpu_scene.model.constants(),
-            &gpu_scene.bindings(&sums, &counters),
+            &gpu_scene.bindings(&sums, &dropped),
             size_of::<layout::Batch>() as u32,
         )?;
-        Ok(GpuTracer { kernel, _scene: gpu_scene, sums, counters, readback, device: device.clone() })
+        Ok(GpuTracer { kernel, _scene: gpu_scene, sums, dropped, readback, device: device.clone() })
     }
 }
 
@@ -91,19 +99,22 @@ impl Tracer for GpuTracer {
         let workgroups = [tile.width.div_ceil(WORKGROUP), tile.height.div_ceil(WORKGROUP), groups];
         let device_seconds = commands::submit(&self.device, "path trace", |cmd| {
             let recorder = Recorder { device: &self.device, cmd };
-            recorder.clear(&self.counters);
+            recorder.clear(&self.dropped);
             recorder.dispatch(&self.kernel, bytemuck::bytes_of(&push), workgroups);
             recorder.read_back(&self.sums, size, &self.readback, 0);
-            recorder.read_back(&self.counters, 16, &self.readback, size);
+            recorder.read_back(&self.dropped, DROPPED_SIZE as u64, &self.readback, size);
         })?;
-        let bytes = &self.readback.mapped()?[..size as usize + 16];
-        let (sums, counters) = bytes.split_at(size as usize);
+        let bytes = &self.readback.mapped()?[..size as usize + DROPPED_SIZE];
+        let (sums, dropped) = bytes.split_at(size as usize);
         let sums = bytemuck::cast_slice::<u8, layout::PixelSum>(sums)
             .iter()
-            .map(|s| PixelSum { radiance: s.radiance.map(f64::from), rays: s.rays })
+            .map(|s| PixelSum { radiance: s.radiance.map(f64::from), rays: s.rays, dropped: s.dropped })
             .collect();
-        let non_finite = bytemuck::cast_slice::<u8, u32>(counters)[0];
-        Ok(Traced { sums, non_finite, device_seconds })
+        let dropped: &layout::Dropped = bytemuck::from_bytes(dropped);
+        let named = dropped.samples.iter().take(dropped.count as usize);
+        let mut dropped: Vec<_> = named.map(|&[pixel, sample]| SampleId { pixel, sample }).collect();
+        dropped.sort();
+        Ok(Traced { sums, dropped, device_seconds })
     }
 
     fn max_sums(&self) -> usize {

@@ -1,4 +1,7 @@
-//! Charts as data, and as SVG.
+//! Charts as data, as SVG and as CSV.
+
+mod ruler;
+mod svg;
 
 /// How an axis is divided.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -63,4 +66,26 @@ pub struct Chart {
     pub y: Axis,
     /// The lines.
     pub series: Vec<Series>,
+}
+
+/// The first line of a CSV of charts.
+pub const CSV_HEADER: &str = "chart,method,x,y,error\n";
+
+impl Chart {
+    /// The points as lines of CSV under [`CSV_HEADER`], with every digit of the numbers; `NaN` where a method gave none, and no
+    /// error where it has none.
+    pub fn csv(&self) -> String {
+        let field = |text: &str| match text.contains([',', '"', '\n']) {
+            true => format!("\"{}\"", text.replace('"', "\"\"")),
+            false => text.to_owned(),
+        };
+        let mut rows = String::new();
+        for series in &self.series {
+            for Point { x, y, error } in &series.points {
+                let error = error.map_or(String::new(), |error| format!("{error:?}"));
+                rows += &format!("{},{},{x:?},{y:?},{error}\n", field(&self.name), field(&series.name));
+            }
+        }
+        rows
+    }
 }

@@ -1,6 +1,14 @@
-//! Measuring: statistics of pictures, charts, and the sweeps that show where methods fail.
+//! Measuring: statistics of pictures, whether the error bar is right, how far two pictures are apart, charts, and the sweeps that show
+//! where methods fail.
 
+pub mod calibration;
 pub mod chart;
+pub mod closed_forms;
+pub mod flip;
+pub mod heat_map;
+pub mod intersect_f32;
+pub mod metrics;
+pub mod rays;
 pub mod stability;
 pub mod statistics;
 mod workbench;

@@ -2,6 +2,7 @@
 
 use crate::film::{Batch, Tile};
 use crate::render::Tracer;
+use crate::sampling::PARTS;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use statrs::function::erf::erfc;
 
@@ -58,12 +59,12 @@ pub struct Image {
     pub rays: u64,
 }
 
-/// Renders samples 0 to `samples` of every pixel, in `groups` equal groups, from whose spread the variance follows.
+/// Renders samples 0 to `samples` of every pixel, in `groups` equal groups (a multiple of [`PARTS`]), from whose spread the variance follows.
 pub fn render(tracer: &mut dyn Tracer, width: u32, height: u32, samples: u32, groups: u32) -> Image {
-    assert!(groups >= 2 && samples.is_multiple_of(groups));
+    assert!(groups >= 2 && groups.is_multiple_of(PARTS) && samples.is_multiple_of(groups));
     let tile = Tile { x: 0, y: 0, width, height };
     let traced = tracer.trace(&Batch { tile, samples: 0..samples, group: samples / groups }).expect("the tracer works");
-    assert_eq!(traced.non_finite, 0);
+    assert_eq!(traced.dropped, []);
     let pixels = tile.pixels();
     assert_eq!(traced.sums.len(), pixels * groups as usize);
     let n = f64::from(groups);

@@ -21,7 +21,7 @@ pub struct Workbench {
 
 impl Workbench {
     /// Opens the preferred Vulkan device, once with and once without ray queries. Without one only the reference is left, and
-    /// [`Workbench::device`] says so.
+    /// [`field@Workbench::device`] says so.
     ///
     /// # Errors
     /// If a device that is there cannot be opened.
@@ -56,6 +56,11 @@ impl Workbench {
     fn device(&self, backend: Backend) -> Result<&Arc<Device>> {
         let device = if backend == Backend::RayQuery { &self.ray_query } else { &self.compute_bvh };
         device.as_ref().ok_or_else(|| Error::NoDevice(format!("{backend} cannot run here: {}", self.device)))
+    }
+
+    /// Bytes of device memory that the backend's tracers and probes hold now; none for the CPU and for what is not here.
+    pub fn allocated_bytes(&self, backend: Backend) -> Option<u64> {
+        (backend != Backend::Cpu).then(|| self.device(backend).ok().map(|device| device.allocated_bytes())).flatten()
     }
 
     /// A tracer with a scene. The caller sees to it that the estimator ends.

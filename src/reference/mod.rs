@@ -26,7 +26,7 @@ mod tree;
 pub mod warp;
 
 use crate::Result;
-use crate::film::{Batch, PixelSum};
+use crate::film::{Batch, PixelSum, SampleId};
 use crate::render::{Traced, Tracer};
 use crate::scene::{LuminaireTable, Scene, widen};
 use glam::{DAffine3, DMat3, DVec3};
@@ -98,27 +98,26 @@ impl Tracer for Reference {
         let this = &*self;
         let tile = batch.tile;
         let pixels = tile.pixels();
-        let (sums, non_finite): (Vec<PixelSum>, Vec<u32>) = (0..pixels * batch.groups() as usize)
+        let (sums, dropped): (Vec<PixelSum>, Vec<Vec<SampleId>>) = (0..pixels * batch.groups() as usize)
             .into_par_iter()
             .map(|index| {
                 let (group, in_tile) = ((index / pixels) as u32, (index % pixels) as u32);
                 let pixel = (tile.y + in_tile / tile.width) * this.scene.film.width + tile.x + in_tile % tile.width;
-                let start = batch.samples.start + group * batch.group;
-                let end = start.saturating_add(batch.group).min(batch.samples.end);
-                let (mut sum, mut rays, mut non_finite) = (DVec3::ZERO, 0, 0);
-                for sample in start..end {
+                let (mut sum, mut rays, mut dropped) = (DVec3::ZERO, 0, vec![]);
+                for sample in batch.group_samples(group) {
                     let (radiance, traced) = this.radiance(pixel, sample);
                     rays += traced;
-                    if radiance.is_finite() {
+                    // What does not fit into a file's f32 is not finite there either.
+                    if radiance.as_vec3().is_finite() {
                         sum += radiance;
                     } else {
-                        non_finite += 1;
+                        dropped.push(SampleId { pixel, sample });
                     }
                 }
-                (PixelSum { radiance: sum.to_array(), rays }, non_finite)
+                (PixelSum { radiance: sum.to_array(), rays, dropped: dropped.len() as u32 }, dropped)
             })
             .unzip();
-        Ok(Traced { sums, non_finite: non_finite.iter().sum(), device_seconds: None })
+        Ok(Traced { sums, dropped: dropped.concat(), device_seconds: None })
     }
 
     fn max_sums(&self) -> usize {

@@ -1,15 +1,43 @@
 //! The radiance along a camera ray: the lecture's path tracer, its recursion turned into a loop with a throughput.
 
 use super::Reference;
+use super::intersect::Hit;
 use super::luminaire::emission_weight;
 use super::scatter::{MAX_SURVIVAL, scatter, survival};
 use crate::sampling::{light_block, ray_salt, scatter_block, uniform};
 use crate::scene::{Extinction, Integrator, LightSampling};
 use glam::DVec3;
 
+/// What happened where a ray of a path ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Vertex {
+    /// What the ray met; none: it left the scene.
+    pub hit: Option<Hit>,
+    /// Where it came from.
+    pub origin: DVec3,
+    /// Its direction; of unit length.
+    pub direction: DVec3,
+    /// What a unit of radiance along the ray adds to the sample.
+    pub throughput: DVec3,
+    /// What the sample had found when the path went on from here.
+    pub radiance: DVec3,
+}
+
 impl Reference {
-    /// Radiance of one sample of a pixel (`y * width + x`), and the number of rays that were traced for it.
+    /// Radiance of one sample of a pixel (`y * width + x`), and the number of rays that were traced for it. It is not finite if the
+    /// path's numbers were not.
     pub fn radiance(&self, pixel: u32, sample: u32) -> (DVec3, u32) {
+        self.follow(pixel, sample, &mut |_| {})
+    }
+
+    /// The same, with every ray of the path (without those to the luminaires).
+    pub fn vertices(&self, pixel: u32, sample: u32) -> (DVec3, Vec<Vertex>) {
+        let mut vertices = vec![];
+        let (radiance, _) = self.follow(pixel, sample, &mut |vertex| vertices.push(vertex));
+        (radiance, vertices)
+    }
+
+    fn follow(&self, pixel: u32, sample: u32, met: &mut impl FnMut(Vertex)) -> (DVec3, u32) {
         let settings = &self.scene.settings;
         let numbers = |block: u32| settings.sampler.numbers(pixel, sample, block, settings.seed);
         let salt = |ray: u32| ray_salt(pixel, sample, ray, settings.seed);
@@ -32,6 +60,7 @@ impl Reference {
             let Some(hit) = self.closest_hit(origin, direction, f64::INFINITY, salt(2 * bounce)) else {
                 let weight = emission_weight(estimator.light_sampling, pdf, self.environment_pdf(direction));
                 radiance += throughput * weight * self.environment_radiance(direction);
+                met(Vertex { hit: None, origin, direction, throughput, radiance });
                 break;
             };
             let wo = -direction;
@@ -41,6 +70,7 @@ impl Reference {
                 radiance += throughput * weight * surfel.emission;
             }
             if estimator.max_bounces.is_some_and(|max| bounce > max) {
+                met(Vertex { hit: Some(hit), origin, direction, throughput, radiance });
                 break;
             }
             if estimator.light_sampling != LightSampling::None {
@@ -51,6 +81,9 @@ impl Reference {
             }
             if let Integrator::Simple { ambient } = self.scene.integrator {
                 radiance += ambient.as_dvec3() * surfel.ambient;
+            }
+            met(Vertex { hit: Some(hit), origin, direction, throughput, radiance });
+            if matches!(self.scene.integrator, Integrator::Simple { .. }) {
                 break;
             }
 
@@ -76,6 +109,11 @@ impl Reference {
             }
             throughput *= scattered.weight;
             if throughput == DVec3::ZERO {
+                break;
+            }
+            // Such a path has not found nothing: it is lost, and has to be counted.
+            if !throughput.is_finite() || !scattered.wi.is_finite() {
+                radiance = DVec3::NAN;
                 break;
             }
             eta_scale *= scattered.eta2;

@@ -1,12 +1,16 @@
 //! How a render is cut into batches.
 
 use crate::film::{Batch, Tile};
+use crate::sampling::PARTS;
 
 /// Samples (over all pixels) of the first batch: few, because each may be a path of ten thousand bounces.
 pub(super) const FIRST_BUDGET: u64 = 64;
 
-/// Groups of one batch: as many workgroups as every Vulkan device takes along an axis.
-const MAX_GROUPS: u64 = 65_535;
+/// The most samples of a pixel whose groups fit one batch: as many workgroups as every Vulkan device takes along an axis.
+const MAX_PASS: u64 = 65_535 / PARTS as u64 * (LONGEST * PARTS) as u64;
+
+/// The most samples of one group: few enough to add them up in `f32`.
+const LONGEST: u32 = 16;
 
 /// How many samples the next batch may hold, after one of `samples` took `seconds`: less at once if that was too long, else at
 /// most four times as many. A small batch (the rest of a pass) that took little says nothing against the present budget.
@@ -19,9 +23,17 @@ pub(super) fn next_budget(budget: u64, samples: u64, seconds: f64, target: f64) 
     }
 }
 
-/// The group that begins at sample `start`: its length. Powers of two up to 16, then 16.
+/// Samples in the groups that begin at sample `start`: powers of two up to 16, then 16.
 pub(super) fn group_length(start: u32) -> u32 {
-    start.clamp(1, 16)
+    let in_part = (start / PARTS).clamp(1, LONGEST);
+    1 << in_part.ilog2()
+}
+
+/// Where the groups that hold sample `start` end.
+fn groups_end(start: u32) -> u32 {
+    let stride = group_length(start) * PARTS;
+    // Up to the longest ones, groups begin at as many samples as they hold.
+    (start / stride + 1).saturating_mul(stride)
 }
 
 /// Cuts the work into batches: pass after pass over the whole film, so that it fills evenly.
@@ -30,6 +42,8 @@ pub(super) struct Schedule {
     width: u32,
     height: u32,
     spp: u32,
+    /// No pass goes beyond this sample, unless it begins there.
+    aim: u32,
     /// The samples of the present pass.
     pass: std::ops::Range<u32>,
     /// Where the next tile begins.
@@ -39,10 +53,20 @@ pub(super) struct Schedule {
 
 impl Schedule {
     pub(super) fn new((width, height): (u32, u32), spp: u32) -> Self {
-        Schedule { width, height, spp, pass: 0..0, x: 0, y: height }
+        Schedule { width, height, spp, aim: u32::MAX, pass: 0..0, x: 0, y: height }
     }
 
-    /// The next batch, of at most `budget` samples and `max_sums` sums, but at least one group of one pixel.
+    /// Samples that all pixels have if the last batch ended a pass.
+    pub(super) fn pass_done(&self) -> Option<u32> {
+        (self.y == self.height).then_some(self.pass.end)
+    }
+
+    /// Lets the next passes end at sample `aim`.
+    pub(super) fn aim(&mut self, aim: u32) {
+        self.aim = aim;
+    }
+
+    /// The next batch, of at most `budget` samples and `max_sums` sums, but at least a group of every part of one pixel.
     pub(super) fn next(&mut self, budget: u64, max_sums: usize) -> Option<Batch> {
         if self.width == 0 {
             return None;
@@ -58,8 +82,8 @@ impl Schedule {
         let samples = self.pass.clone();
         let group = group_length(samples.start);
         let length = u64::from(samples.end - samples.start);
-        let groups = length.div_ceil(u64::from(group));
-        let pixels = (budget / length).min(max_sums as u64 / groups).max(1);
+        let whole = Batch { tile: Tile { x: 0, y: 0, width: 1, height: 1 }, samples: samples.clone(), group };
+        let pixels = (budget / length).min(max_sums as u64 / u64::from(whole.groups())).max(1);
         let mut tile = Tile { x: self.x, y: self.y, width: self.width - self.x, height: 1 };
         let rows = pixels / u64::from(self.width);
         if self.x == 0 && rows > 0 {
@@ -78,13 +102,19 @@ impl Schedule {
 
     /// Where a pass from sample `start` ends: several groups of equal length if the whole film with them fits one batch.
     fn pass_end(&self, start: u32, budget: u64, max_sums: u64) -> u32 {
-        let group = group_length(start);
+        let parts = u64::from(PARTS);
+        let stride = u64::from(group_length(start)) * parts;
         let pixels = u64::from(self.width) * u64::from(self.height);
-        let fitting = (budget / (pixels * u64::from(group))).min(max_sums / pixels).max(1);
-        // Up to 16 the groups grow: only the first two are of equal length.
-        let equal = if start < 16 { if start == 0 { 2 } else { 1 } } else { MAX_GROUPS };
-        let end = u64::from(start) + fitting.min(equal) * u64::from(group);
-        end.min(u64::from(self.spp)) as u32
+        let fitting = (budget / (pixels * stride)).min(max_sums / (pixels * parts)).max(1);
+        // Up to the longest ones the groups grow: only the first two are of equal length.
+        let end = u64::from(groups_end(start)) + (fitting - 1) * stride;
+        let equal = match start / PARTS {
+            0 => 2 * parts,
+            1..LONGEST => u64::from(groups_end(start)),
+            _ => u64::from(start) + MAX_PASS,
+        };
+        let aim = if self.aim > start { self.aim } else { u32::MAX };
+        end.min(equal).min(u64::from(self.spp.min(aim))) as u32
     }
 }
 
@@ -94,9 +124,15 @@ mod tests {
 
     #[test]
     fn group_bounds() {
-        let bounds: Vec<u32> =
-            std::iter::successors(Some(0), |b| Some(b + group_length(*b))).take_while(|b| *b <= 64).collect();
+        let bounds: Vec<u32> = std::iter::successors(Some(0), |b| Some(groups_end(*b)))
+            .map(|b| b / PARTS)
+            .take_while(|b| *b <= 64)
+            .collect();
         assert_eq!(bounds, [0, 1, 2, 4, 8, 16, 32, 48, 64]);
+        assert!(
+            (0..1000).all(|start| groups_end(start) > start && groups_end(groups_end(start) - 1) == groups_end(start))
+        );
+        assert_eq!((groups_end(u32::MAX), group_length(u32::MAX)), (u32::MAX, 16));
     }
 
     #[test]
@@ -105,14 +141,22 @@ mod tests {
         let passes: Vec<_> = std::iter::from_fn(|| schedule.next(4096 * 480, 1 << 30)).collect();
         assert!(passes.iter().all(|b| b.tile.pixels() == 4096));
         let ranges: Vec<_> = passes.iter().map(|b| b.samples.clone()).collect();
-        assert_eq!(ranges, [0..2, 2..4, 4..8, 8..16, 16..496, 496..976, 976..1000]);
+        assert_eq!(ranges, [0..8, 8..16, 16..32, 32..64, 64..512, 512..960, 960..1000]);
+    }
+
+    #[test]
+    fn a_pass_ends_at_the_aim() {
+        let mut schedule = Schedule::new((64, 64), 1000);
+        schedule.aim(77);
+        let passes: Vec<_> = std::iter::from_fn(|| schedule.next(1 << 40, 1 << 30)).map(|b| b.samples).collect();
+        assert_eq!(passes, [0..8, 8..16, 16..32, 32..64, 64..77, 77..1000]);
     }
 
     #[test]
     fn a_single_pixel_stays_within_the_dispatch_limit() {
         let mut schedule = Schedule::new((1, 1), u32::MAX);
-        schedule.pass.end = 16;
-        assert_eq!(schedule.next(1 << 40, 1 << 30).map(|b| b.groups()), Some(65_535));
+        schedule.pass.end = 16 * PARTS;
+        assert_eq!(schedule.next(1 << 40, 1 << 30).map(|b| b.groups()), Some(65_535 / PARTS * PARTS));
     }
 
     #[test]

@@ -22,6 +22,11 @@ pub mod sobol;
 
 pub use alias::AliasTable;
 
+/// Into how many independent parts the samples of a pixel fall: sample `s` is number `s / PARTS` of part `s % PARTS`. Each part has a
+/// scrambling of its own, so that the spread of their means tells the error, which one sequence could not: its samples
+/// depend on each other. More parts would tell the error better, and spread the samples out less well.
+pub const PARTS: u32 = 4;
+
 /// The block that the sensor draws from.
 pub const SENSOR_BLOCK: u32 = 0;
 
@@ -52,7 +57,7 @@ impl Sampler {
     pub fn numbers(self, pixel: u32, sample: u32, block: u32, seed: u32) -> [u32; 4] {
         match self {
             Sampler::Independent => random4(pixel, sample, block, seed),
-            Sampler::Sobol => sobol::sobol4(pixel, sample, block, seed),
+            Sampler::Sobol => sobol::sobol4(pixel, sample % PARTS, sample / PARTS, block, seed),
         }
     }
 }

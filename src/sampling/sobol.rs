@@ -39,19 +39,19 @@ pub fn second_dimension(index: u32) -> u32 {
     y ^ y >> 16
 }
 
-/// The four numbers of a block: two pairs, each a scrambled (0, 2)-sequence in `sample`, independent of each other and of all other
-/// pixels, blocks and seeds.
-pub fn sobol4(pixel: u32, sample: u32, block: u32, seed: u32) -> [u32; 4] {
-    let seeds = random4(pixel, u32::MAX, block, seed);
+/// The four numbers of a block: two pairs, each a scrambled (0, 2)-sequence in `index`, independent of each other and of all other
+/// pixels, parts, blocks and seeds.
+pub fn sobol4(pixel: u32, part: u32, index: u32, block: u32, seed: u32) -> [u32; 4] {
+    let seeds = random4(pixel, !part, block, seed);
     // Four numbers make six seeds: those of one pair are independent.
-    let [x0, y0] = pair(sample, seeds[2] ^ seeds[3], [seeds[0], seeds[1]]);
-    let [x1, y1] = pair(sample, seeds[0] ^ seeds[1], [seeds[2], seeds[3]]);
+    let [x0, y0] = pair(index, seeds[2] ^ seeds[3], [seeds[0], seeds[1]]);
+    let [x1, y1] = pair(index, seeds[0] ^ seeds[1], [seeds[2], seeds[3]]);
     [x0, y0, x1, y1]
 }
 
 /// One point of a scrambled sequence: the order of the points is scrambled by `order`, the dimensions by `seeds`.
-fn pair(sample: u32, order: u32, seeds: [u32; 2]) -> [u32; 2] {
-    let index = owen_scramble(sample.reverse_bits(), order).reverse_bits();
+fn pair(index: u32, order: u32, seeds: [u32; 2]) -> [u32; 2] {
+    let index = owen_scramble(index.reverse_bits(), order).reverse_bits();
     let reversed = [owen_scramble(index, seeds[0]), owen_scramble(second_dimension(index), seeds[1])];
     reversed.map(u32::reverse_bits)
 }

@@ -10,7 +10,6 @@ mod environment;
 mod environment_file;
 mod estimator;
 mod filter;
-mod image_file;
 mod load;
 mod luminaire;
 mod map_options;

@@ -3,45 +3,28 @@
 use super::*;
 use crate::common::scenes::*;
 use glam::{Affine3A, DAffine3, DMat3, DVec3, Mat3, Vec3};
-use luminaire::gpu::probe::{Call, Function, Probe};
+use luminaire::gpu::probe::{Function, Probe};
+use luminaire::measure::rays::{self, Ray};
 use luminaire::reference::Reference;
+use luminaire::reference::intersect::Hit;
 use luminaire::scene::{Mesh, Scene};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
-
-/// A ray; all numbers are exact in f32.
-#[derive(Debug, Clone, Copy)]
-struct Ray {
-    origin: Vec3,
-    direction: Vec3,
-    t_max: f32,
-}
-
-impl Ray {
-    fn call(&self) -> Call {
-        let [o, d] = [self.origin, self.direction].map(|v| v.to_array().map(f32::to_bits));
-        [[o[0], o[1], o[2], self.t_max.to_bits()], [d[0], d[1], d[2], 0]]
-    }
-}
 
 /// What a backend or the oracle found: (t, object, triangle), or nothing.
 type Found = Option<(f64, u32, u32)>;
 
 fn probe_hits(backend: &Intersector, scene: &Scene, function: Function, rays: &[Ray]) -> Vec<Found> {
     let probe = Probe::new(&backend.device, scene, backend.ray_query).expect("a probe");
-    let calls: Vec<Call> = rays.iter().map(Ray::call).collect();
-    let results = probe.call(function, &calls).expect("the probe runs");
-    let hit = |r: &Call| (r[0][1] != u32::MAX).then(|| (f64::from(f32::from_bits(r[0][0])), r[0][1], r[0][2]));
-    results.iter().map(hit).collect()
+    rays::probe_hits(&probe, function, rays).expect("the probe runs").into_iter().map(found).collect()
 }
 
 fn oracle_hits(oracle: &Reference, rays: &[Ray]) -> Vec<Found> {
-    rays.iter()
-        .map(|r| {
-            let hit = oracle.closest_hit(r.origin.as_dvec3(), r.direction.as_dvec3(), f64::from(r.t_max), 0)?;
-            Some((hit.t, hit.object, hit.triangle))
-        })
-        .collect()
+    rays::reference_hits(oracle, rays).into_iter().map(found).collect()
+}
+
+fn found(hit: Option<Hit>) -> Found {
+    hit.map(|hit| (hit.t, hit.object, hit.triangle))
 }
 
 fn in_cube(rng: &mut StdRng) -> Vec3 {

@@ -7,6 +7,7 @@
 mod common;
 
 mod densities;
+mod error_bar;
 mod estimators;
 mod fallback;
 mod features;

@@ -219,12 +219,12 @@ fn light_does_not_leak_through_closed_walls() {
         scene.luminaires.push(point(direction * 3.0, 100.0));
         scene.luminaires.push(Luminaire::Infinite { direction, irradiance: Vec3::splat(100.0) });
     }
-    let image = render(&mut Reference::new(&scene), 16, 16, 64, 2);
+    let image = render(&mut Reference::new(&scene), 16, 16, 64, 4);
     assert!(image.mean.iter().all(|p| *p == [0.0; 3]));
     assert!(image.rays > 16 * 16 * 64 * 5, "paths go on inside: {} rays", image.rays);
 
     scene.luminaires.push(point(Vec3::ZERO, 1000.0));
-    let image = render(&mut Reference::new(&scene), 16, 16, 64, 2);
+    let image = render(&mut Reference::new(&scene), 16, 16, 64, 4);
     assert!(image.mean.iter().all(|p| p[0] > 0.0), "and are lit from inside");
 }
 

@@ -61,7 +61,7 @@ impl Spot {
         for first in (0..per_pixel).step_by(BATCH as usize) {
             let batch = Batch { tile, samples: first..per_pixel.min(first + BATCH), group: 1 };
             let traced = tracer.trace(&batch)?;
-            non_finite += traced.non_finite;
+            non_finite += traced.sums.iter().map(|sum| sum.dropped).sum::<u32>();
             for sum in &traced.sums {
                 let sample = sum.radiance[1];
                 count += 1;

@@ -12,7 +12,7 @@ const LARGEST_SIDE: u32 = 16_384;
 const MOST_MEMORY: u64 = 1 << 30;
 
 /// So many texels are worth another thread.
-pub(super) const CHUNK: usize = 1 << 14;
+pub(crate) const CHUNK: usize = 1 << 14;
 
 /// The linear values of all sRGB codes of 8 bits.
 static LINEAR_8: LazyLock<Vec<f32>> =
@@ -23,7 +23,7 @@ static LINEAR_16: LazyLock<Vec<f32>> =
 
 /// A decoded image, four channels a texel, from the upper left, row by row.
 #[derive(Debug)]
-pub(super) struct ImageFile {
+pub(crate) struct ImageFile {
     /// Width in texels.
     pub width: u32,
     /// Height in texels.
@@ -47,7 +47,7 @@ impl ImageFile {
     ///
     /// # Errors
     /// In words that can follow the file's name: it cannot be read, is no image, is damaged, or is too large.
-    pub(super) fn open(path: &Path, most: u64, too_many: impl FnOnce(u64) -> String) -> Result<Self, String> {
+    pub(crate) fn open(path: &Path, most: u64, too_many: impl FnOnce(u64) -> String) -> Result<Self, String> {
         let about = std::fs::metadata(path).map_err(|e| e.to_string())?;
         if !about.is_file() {
             // A pipe or a device may never end.
@@ -87,12 +87,17 @@ impl ImageFile {
     }
 
     /// How many texels there are.
-    pub(super) fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.width as usize * self.height as usize
     }
 
+    /// Whether the file holds floats, which are linear.
+    pub(crate) fn is_float(&self) -> bool {
+        matches!(self.texels, Texels::Float(_))
+    }
+
     /// A texel's numbers as they are stored; whole numbers are scaled to [0, 1].
-    pub(super) fn stored(&self, texel: usize) -> [f32; 4] {
+    pub(crate) fn stored(&self, texel: usize) -> [f32; 4] {
         let channels = 4 * texel..4 * texel + 4;
         let mut rgba = [0.0; 4];
         match &self.texels {
@@ -108,7 +113,7 @@ impl ImageFile {
     }
 
     /// A texel's linear colour and alpha: whole numbers are taken as sRGB, but for alpha; floats are linear as they are.
-    pub(super) fn linear(&self, texel: usize) -> [f32; 4] {
+    pub(crate) fn linear(&self, texel: usize) -> [f32; 4] {
         let [r, g, b, a] = self.stored(texel);
         let at = |channel: usize| 4 * texel + channel;
         match &self.texels {
@@ -125,7 +130,7 @@ impl ImageFile {
     }
 
     /// All texels: `colour` of the linear colours (see [`ImageFile::linear`]), and `alpha` of alpha.
-    pub(super) fn decode(
+    pub(crate) fn decode(
         &self,
         colour: impl Fn(f32) -> f16 + Sync,
         alpha: impl Fn(f32) -> f16 + Sync,
@@ -145,7 +150,7 @@ impl ImageFile {
     }
 
     /// Whether alpha is below 1 anywhere.
-    pub(super) fn has_transparency(&self) -> bool {
+    pub(crate) fn has_transparency(&self) -> bool {
         self.has_alpha
             && match &self.texels {
                 Texels::Eight(data) => data.chunks_exact(4).any(|texel| texel[3] < u8::MAX),

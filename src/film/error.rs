@@ -1,0 +1,255 @@
+//! The error bar: how far a picture is from the truth, told from the spread of the independent parts of its samples.
+//!
+//! The variance of a pixel's mean follows from the means of its [`PARTS`](crate::sampling::PARTS) parts. Four numbers tell a variance badly, and where the light
+//! comes in rare bright samples they tell too little (all of them may have missed it), so a pixel's error is that of its 3 x 3
+//! neighbourhood. Pixels that stand out of theirs by what few parts hold, *fireflies*, are counted apart: by itself nobody can tell one from a
+//! small bright object.
+
+use super::Film;
+use rayon::prelude::*;
+
+/// Added to the squared radiance that a squared error is divided by: what is darker than 0.1 counts less.
+pub const REL_MSE_FLOOR: f64 = 0.01;
+
+/// A pixel is a firefly if at most two of its four parts hold its radiance ...
+const FIREFLY_VARIANCE: f64 = 1.0 / 6.0;
+/// ... and that is so many times its neighbours',
+const FIREFLY_CONTRAST: f64 = 5.0;
+/// or this radiance where they are darker.
+const FIREFLY_FLOOR: f64 = 1e-3;
+
+/// Keeps weights finite where nothing varies.
+const TINY: f64 = 1e-30;
+
+/// How far a picture as a whole is from the truth, without its fireflies.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ErrorEstimate {
+    /// Root of the mean square of the error, over pixels and channels.
+    pub rmse: f64,
+    /// Mean of `error^2 / (radiance^2 + 0.01)` over pixels and channels.
+    pub rel_mse: f64,
+    /// Pixels that are left out.
+    pub fireflies: u64,
+}
+
+impl ErrorEstimate {
+    /// The relative error: the root of [`ErrorEstimate::rel_mse`].
+    pub fn relative(&self) -> f64 {
+        self.rel_mse.sqrt()
+    }
+}
+
+/// The estimated error of every pixel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ErrorMap {
+    /// Standard error of the mean of each pixel and channel, rows from the top. The truth is within twice that in 19 of 20 pixels.
+    pub standard_error: Vec<[f32; 3]>,
+    /// The same over the radiance, or over 0.1 where that is darker: the root mean square of the channels.
+    pub relative: Vec<f32>,
+    /// Whether the pixel is a firefly; its own parts alone tell its error then.
+    pub firefly: Vec<bool>,
+    /// The picture as a whole.
+    pub total: ErrorEstimate,
+}
+
+impl Film {
+    /// The estimated error of the picture; none if a pixel has samples in fewer than two parts.
+    pub fn error(&self) -> Option<ErrorEstimate> {
+        Some(self.error_map()?.total)
+    }
+
+    /// The estimated error of every pixel; none if a pixel has samples in fewer than two parts.
+    pub fn error_map(&self) -> Option<ErrorMap> {
+        // The fourth "channel" is the mean of the others, by which fireflies are told.
+        let own: Vec<[Measured; 4]> =
+            (0..self.pixels()).into_par_iter().map(|pixel| self.measured(pixel)).collect::<Option<_>>()?;
+        let map = |f: &(dyn Fn(usize) -> [f64; 4] + Sync)| -> Vec<[f64; 4]> {
+            (0..own.len()).into_par_iter().map(f).collect()
+        };
+        let pooled = map(&|pixel| mean_variance(self.around(pixel).map(|j| &own[j])));
+        // What the others say about a pixel: their mean, in which noisy ones count for less.
+        let expected = map(&|pixel| {
+            [0, 1, 2, 3].map(|c| {
+                let (mut sum, mut weights) = (0.0, 0.0);
+                for j in self.around(pixel).filter(|j| *j != pixel) {
+                    let weight = 1.0 / (own[j][c].variance + pooled[j][c] + TINY);
+                    sum += weight * own[j][c].mean;
+                    weights += weight;
+                }
+                if weights > 0.0 { sum / weights } else { own[pixel][c].mean }
+            })
+        });
+        let firefly: Vec<bool> = (own.par_iter().zip(&expected))
+            .map(|([.., grey], [.., expected])| {
+                grey.variance > FIREFLY_VARIANCE * grey.mean * grey.mean
+                    && grey.mean > FIREFLY_CONTRAST * (expected + FIREFLY_FLOOR)
+            })
+            .collect();
+
+        let (mut square, mut relative_square, mut counted) = (0.0, 0.0, 0u64);
+        let mut errors = ErrorMap {
+            standard_error: Vec::with_capacity(own.len()),
+            relative: Vec::with_capacity(own.len()),
+            firefly,
+            total: ErrorEstimate { rmse: 0.0, rel_mse: 0.0, fireflies: 0 },
+        };
+        for (pixel, own_here) in own.iter().enumerate() {
+            let alone = errors.firefly[pixel];
+            let variance = if alone {
+                own_here.map(|m| m.variance)
+            } else {
+                mean_variance(self.around(pixel).filter(|j| !errors.firefly[*j]).map(|j| &own[j]))
+            };
+            let scale: [f64; 3] =
+                std::array::from_fn(|c| own_here[c].plausible(expected[pixel][c]).powi(2) + REL_MSE_FLOOR);
+            let channels = 0..3;
+            errors.standard_error.push(std::array::from_fn(|c| variance[c].sqrt() as f32));
+            let relative: f64 = channels.clone().map(|c| variance[c] / scale[c]).sum();
+            errors.relative.push((relative / 3.0).sqrt() as f32);
+            if !alone {
+                counted += 3;
+                square += channels.clone().map(|c| own_here[c].variance).sum::<f64>();
+                relative_square += channels.map(|c| own_here[c].variance / scale[c]).sum::<f64>();
+            }
+        }
+        let counted_or_one = counted.max(1) as f64;
+        errors.total = ErrorEstimate {
+            rmse: (square / counted_or_one).sqrt(),
+            rel_mse: relative_square / counted_or_one,
+            fireflies: own.len() as u64 - counted / 3,
+        };
+        Some(errors)
+    }
+
+    /// Mean and variance of a pixel: red, green, blue, and their mean.
+    fn measured(&self, pixel: usize) -> Option<[Measured; 4]> {
+        let samples = self.part_samples(pixel).map(f64::from);
+        let parts = samples.iter().filter(|n| **n > 0.0).count();
+        if parts < 2 {
+            return None;
+        }
+        let all: f64 = samples.iter().sum();
+        // Weighted by the numbers of samples: without bias if the variance of a part's mean goes as one over its samples.
+        let scale = 1.0 / ((parts as f64 - 1.0) * all);
+        let sums = self.sums[pixel].map(|[r, g, b]| [r, g, b, (r + g + b) / 3.0]);
+        Some([0, 1, 2, 3].map(|c| {
+            let mean = sums.iter().map(|sum| sum[c]).sum::<f64>() / all;
+            let filled = samples.iter().zip(&sums).filter(|(n, _)| **n > 0.0);
+            let spread: f64 = filled.map(|(n, sum)| (sum[c] - n * mean).powi(2) / n).sum();
+            Measured { mean, variance: scale * spread }
+        }))
+    }
+
+    /// The pixels of the 3 x 3 neighbourhood, itself among them; fewer at the edges.
+    fn around(&self, pixel: usize) -> impl Iterator<Item = usize> + use<> {
+        let (width, height) = (self.width as usize, self.height as usize);
+        let (x, y) = (pixel % width, pixel / width);
+        let columns = x.saturating_sub(1)..=(x + 1).min(width - 1);
+        (y.saturating_sub(1)..=(y + 1).min(height - 1)).flat_map(move |y| columns.clone().map(move |x| y * width + x))
+    }
+}
+
+/// Mean of a pixel in one channel, and the variance of that mean.
+#[derive(Debug, Clone, Copy)]
+struct Measured {
+    mean: f64,
+    variance: f64,
+}
+
+impl Measured {
+    /// The radiance as far as it can be told: the pixel's own where it is sure of it, towards its neighbours' where it is not (James and
+    /// Stein's shrinking). An error measured against the pixel's own radiance would be too small wherever that is too large by chance.
+    fn plausible(self, expected: f64) -> f64 {
+        let off = self.mean - expected;
+        let sure = if off == 0.0 { 0.0 } else { (1.0 - self.variance / (off * off)).max(0.0) };
+        // What is no firefly is not taken to be more than three times too bright.
+        (expected + sure * off).max(self.mean / 3.0)
+    }
+}
+
+/// Mean of the variances of some pixels, by channel.
+fn mean_variance<'a>(pixels: impl Iterator<Item = &'a [Measured; 4]>) -> [f64; 4] {
+    let (mut sum, mut n) = ([0.0; 4], 0.0);
+    for pixel in pixels {
+        (0..4).for_each(|c| sum[c] += pixel[c].variance);
+        n += 1.0;
+    }
+    sum.map(|sum| sum / n)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::{Batch, PixelSum, Tile};
+    use crate::sampling::{random4, uniform};
+
+    const SIZE: u32 = 64;
+
+    /// Grey pixels of a given radiance whose samples are spread evenly over it times 1 - `spread` to 1 + `spread`.
+    fn film(samples: u32, spread: f64, radiance: impl Fn(u32, u32) -> f64) -> Film {
+        let mut film = Film::new(SIZE, SIZE).unwrap();
+        let tile = Tile { x: 0, y: 0, width: SIZE, height: SIZE };
+        for sample in 0..samples {
+            let value = |pixel: u32| {
+                let random = uniform(random4(pixel, sample, 0, 0)[0]);
+                radiance(pixel % SIZE, pixel / SIZE) * (1.0 + spread * (2.0 * random - 1.0))
+            };
+            let sums: Vec<_> =
+                (0..SIZE * SIZE).map(|i| PixelSum { radiance: [value(i); 3], ..Default::default() }).collect();
+            film.add(&Batch { tile, samples: sample..sample + 1, group: 1 }, &sums);
+        }
+        film
+    }
+
+    #[test]
+    fn the_error_of_even_noise_is_that_of_its_distribution() {
+        // 18 samples: parts of unequal size.
+        let (samples, spread) = (18, 0.5);
+        let error = film(samples, spread, |_, _| 3.0).error_map().unwrap();
+        let expected = 3.0 * spread / 3f64.sqrt() / f64::from(samples).sqrt();
+        // 4096 pixels of three degrees of freedom: 1.3 % of the variance, and three times that is allowed.
+        assert!((error.total.rmse / expected - 1.0).abs() < 0.02, "{error:?} {expected}");
+        assert!((error.total.relative() / (expected / 9.01f64.sqrt()) - 1.0).abs() < 0.02);
+        assert_eq!(error.total.fireflies, 0);
+        let mean: f64 = error.standard_error.iter().map(|e| f64::from(e[1]).powi(2)).sum::<f64>() / 4096.0;
+        assert!((mean.sqrt() / expected - 1.0).abs() < 0.02);
+        let relative = error.relative.iter().map(|e| f64::from(e * e)).sum::<f64>() / 4096.0;
+        assert!((relative.sqrt() * 9.01f64.sqrt() / expected - 1.0).abs() < 0.02);
+    }
+
+    #[test]
+    fn bright_and_dark_areas_keep_their_own_error() {
+        let radiance = |x: u32, _| if x < 32 { 0.001 } else { 1000.0 };
+        let error = film(16, 0.5, radiance).error_map().unwrap();
+        // Away from the border each side has its own.
+        assert!(error.standard_error[5][0] < 1e-3 && error.standard_error[60][0] > 10.0);
+        let relative = 0.5 / 3f64.sqrt() / 4.0;
+        assert!((error.total.relative() / (relative / 2f64.sqrt()) - 1.0).abs() < 0.03, "{:?}", error.total);
+        assert_eq!(error.total.fireflies, 0);
+    }
+
+    #[test]
+    fn a_firefly_is_told_apart_and_a_lamp_is_not() {
+        let mut film = film(16, 0.5, |x, y| if (x, y) == (40, 40) { 500.0 } else { 1.0 });
+        let before = film.error_map().unwrap();
+        assert_eq!(before.total.fireflies, 0, "a lamp of one pixel, in all parts");
+        let at = 20 * SIZE as usize + 20;
+        film.sums[at][2][0] += 5000.0;
+        let after = film.error_map().unwrap();
+        assert_eq!(after.total.fireflies, 1);
+        assert!(after.firefly[at] && after.standard_error[at][0] > 100.0 && after.relative[at] > 1.0);
+        assert_eq!(after.standard_error[at + 1][0], {
+            let others = film.around(at + 1).filter(|j| *j != at).map(|j| film.measured(j).unwrap()[0].variance);
+            (others.sum::<f64>() / 8.0).sqrt() as f32
+        });
+        assert!((after.total.relative() / before.total.relative() - 1.0).abs() < 0.01);
+    }
+
+    #[test]
+    fn nothing_is_told_from_one_part_and_no_error_from_noiseless_samples() {
+        assert_eq!(film(1, 0.5, |_, _| 1.0).error(), None);
+        let error = film(8, 0.0, |x, _| f64::from(x)).error().unwrap();
+        assert_eq!(error, ErrorEstimate { rmse: 0.0, rel_mse: 0.0, fireflies: 0 });
+        assert_eq!(film(8, 0.0, |_, _| 0.0).error().unwrap().rel_mse, 0.0);
+    }
+}

@@ -1,0 +1,102 @@
+//! What a render knows of its own error, on every backend: dropped samples, the estimated error.
+
+use super::*;
+use crate::common::scenes::*;
+use glam::{Affine3A, Vec3};
+use luminaire::film::{Batch, Tile};
+use luminaire::render::{End, Limits, Tracer, render};
+use luminaire::scene::{Luminaire, Scene};
+use std::sync::atomic::AtomicBool;
+
+/// A floor below a point luminaire whose radiance overflows `f32` in some pixels: in the reference, which computes in `f64`, when it is
+/// rounded to the picture's `f32`.
+fn overflowing(size: u32) -> Scene {
+    let mut scene = empty(size, size);
+    add(
+        &mut scene,
+        quad(Vec3::new(-4.0, -1.0, -6.0), Vec3::Z * 8.0, Vec3::X * 8.0),
+        matte(Vec3::splat(0.5)),
+        Affine3A::IDENTITY,
+    );
+    scene.sensor = pinhole(Vec3::ZERO, Vec3::new(0.0, -1.0, -3.0), Vec3::Y, 15.0);
+    scene.luminaires.push(Luminaire::Point { position: Vec3::new(0.0, -0.75, -3.0), intensity: Vec3::splat(3e38) });
+    estimator(&mut scene).max_bounces = Some(0);
+    scene
+}
+
+#[test]
+fn samples_that_are_not_finite_are_dropped_and_named() {
+    let scene = overflowing(32);
+    let tile = Tile { x: 0, y: 0, width: 32, height: 32 };
+    let batch = Batch { tile, samples: 0..8, group: 2 };
+    let expected = luminaire::reference::Reference::new(&scene).trace(&batch).expect("the reference works");
+    let count = |sums: &[luminaire::film::PixelSum]| sums.iter().map(|s| s.dropped).sum::<u32>();
+    assert!(count(&expected.sums) > 20 && expected.dropped.len() == count(&expected.sums) as usize);
+    on_every_backend(|backend| {
+        let mut tracer = backend.tracer(&scene);
+        let traced = tracer.trace(&batch).expect("the tracer works");
+        // Here the irradiance is too large already, before the albedo makes the radiance smaller.
+        assert!(count(&traced.sums) >= count(&expected.sums), "{}", backend.name());
+        assert!(traced.sums.iter().all(|s| s.radiance.iter().all(|v| v.is_finite())));
+        assert_eq!(traced.dropped.len(), 15, "as many as there is room for");
+        assert!(traced.dropped.is_sorted());
+        // By its name a sample is found again.
+        for id in &traced.dropped {
+            let tile = Tile { x: id.pixel % 32, y: id.pixel / 32, width: 1, height: 1 };
+            let samples = id.sample..id.sample + 1;
+            let alone = tracer.trace(&Batch { tile, samples, group: 1 }).expect("the tracer works");
+            assert_eq!(alone.dropped, [*id]);
+        }
+    });
+}
+
+/// The picture of what is left is finite, and the same samples are dropped however the render is cut.
+#[test]
+fn a_film_with_dropped_samples_is_finite() {
+    let scene = overflowing(16);
+    on_every_backend(|backend| {
+        let limits = Limits { spp: Some(16), ..Limits::default() };
+        let rendered = render(&mut backend.tracer(&scene), (16, 16), limits, &mut |_| {}, &AtomicBool::new(false))
+            .expect("the film fits");
+        assert!(rendered.dropped > 20 && !rendered.dropped_samples.is_empty(), "{}", rendered.dropped);
+        assert_eq!(rendered.film.dropped.values().map(|n| u64::from(*n)).sum::<u64>(), rendered.dropped);
+        assert!(rendered.film.to_linear().iter().all(|v| v.is_finite()));
+    });
+}
+
+/// `Limits::noise` ends a render, and the error is then about what was promised.
+#[test]
+fn a_noise_limit_is_met() {
+    let scene = |seed| {
+        let mut scene = cornell_like(48, 48);
+        scene.settings.sampler = luminaire::scene::Sampler::Sobol;
+        scene.settings.seed = seed;
+        scene
+    };
+    on_every_backend(|backend| {
+        let run = |seed, limits| {
+            render(&mut backend.tracer(&scene(seed)), (48, 48), limits, &mut |_| {}, &AtomicBool::new(false))
+                .expect("it fits")
+        };
+        let promise = 0.1;
+        let rendered = run(0, Limits { noise: Some(promise), ..Limits::default() });
+        assert!(matches!(rendered.end, End::Noise));
+        let error = rendered.progress.error.expect("an estimate");
+        assert!(error.relative() <= promise && error.relative() > 0.9 * promise, "{error:?}");
+        // Against 16 times as many other samples.
+        let spp = rendered.film.most_samples();
+        let truth = run(1, Limits { spp: Some(16 * spp), ..Limits::default() }).film;
+        let fireflies = rendered.film.error_map().expect("an estimate").firefly;
+        let pixels = (0..truth.pixels()).filter(|pixel| !fireflies[*pixel]);
+        let values = pixels.flat_map(|pixel| std::iter::zip(rendered.film.mean(pixel), truth.mean(pixel)));
+        let (mut sum, mut n) = (0.0, 0.0);
+        for (found, expected) in values {
+            sum += (found - expected).powi(2) / (expected * expected + 0.01);
+            n += 1.0;
+        }
+        let relative = (sum / n).sqrt();
+        println!("{}: {spp} samples, {error:?}, against 16 times as many {relative}", backend.name());
+        // The truth's own error adds 3 %.
+        assert!((0.8..1.25).contains(&(relative / promise)), "{relative}");
+    });
+}
