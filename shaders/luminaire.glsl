@@ -15,12 +15,9 @@ float power_heuristic(float own, float other) {
 }
 
 // Whether a triangle is so near to `p` that it is sampled by solid angle; if so, its corners' directions and that angle.
-bool is_near(vec3 p, vec3 a, vec3 b, vec3 c, vec3 normal, float area, out vec3 v[3], out float omega) {
+bool is_near(vec3 p, vec3 a, vec3 b, vec3 c, float area, out vec3 v[3], out float omega) {
     omega = 0.0;
     if (!SOLID_ANGLE) return false;
-    // In its own plane a point sees nothing of the triangle, but rounding might make that half of all directions.
-    float height = dot(normal, a - p);
-    if (height * height <= 1e-13 * area) return false;
     vec3 d = (a + b + c) * (1.0 / 3.0) - p;
     if (area <= 0.05 * dot(d, d)) return false;
     v[0] = normalize(a - p);
@@ -49,7 +46,7 @@ float triangle_density(vec3 p, vec3 wi, Hit hit, float area_density) {
     float area = 0.5 * double_area;
     vec3 v[3];
     float omega;
-    if (is_near(p, a, b, c, normal / double_area, area, v, omega)) return area_density * area / omega;
+    if (is_near(p, a, b, c, area, v, omega)) return area_density * area / omega;
     // Choosing the triangle is in proportion to its area, and the point on it to one over its area.
     return area_density * hit.t * hit.t * double_area / abs(dot(normal, wi));
 }
@@ -71,9 +68,6 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, vec3 throughput, uvec4 r
     bool infinite = INFINITE_LUMINAIRES && (!several || light.kind == INFINITE);
     bool area = AREA_LUMINAIRES && (!several || light.kind == AREA);
     bool surroundings = ENVIRONMENT && (!several || light.kind == SURROUNDINGS);
-    // Whether a lamp is near is seen from where rays start, so that a path that meets it (`triangle_density`) agrees about its density, and
-    // its own triangle is below.
-    vec3 origin = offset_ray_origin(s.position, s.position_error, s.geometric_normal, s.geometric_normal);
     // Unshadowed radiance over the density of finding it, and the shadow ray that must reach (0, t_max) unhindered.
     vec3 target = light.a.xyz;
     vec3 wi = target;
@@ -90,11 +84,14 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, vec3 throughput, uvec4 r
         float double_area = 2.0 * light.b.w;
         vec3 v[3];
         float omega;
-        if (area && is_near(origin, light.a.xyz, light.b.xyz, light.c.xyz, light.normal.xyz, light.b.w, v, omega)) {
+        float height = dot(light.normal.xyz, light.a.xyz - s.position);
+        // In its own plane a point sees nothing of the triangle, but rounding would make that half of all directions.
+        if (area && abs(height) <= dot(abs(light.normal.xyz), s.position_error)) return vec3(0.0);
+        if (area && is_near(s.position, light.a.xyz, light.b.xyz, light.c.xyz, light.b.w, v, omega)) {
             wi = spherical_triangle(v, omega, uniform2(random.xy));
-            float t = dot(light.normal.xyz, light.a.xyz - origin) / dot(light.normal.xyz, wi);
-            target = origin + t * wi;
-            target_error += gamma(8.0) * (largest(abs(origin)) + largest(abs(light.a.xyz)));
+            float t = height / dot(light.normal.xyz, wi);
+            target = s.position + t * wi;
+            target_error += gamma(8.0) * (largest(abs(s.position)) + largest(abs(light.a.xyz)));
             incident *= omega;
             density = light.radiance.w / omega;
             // The plane may be missed where the triangle is seen edge-on.
@@ -142,6 +139,7 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, vec3 throughput, uvec4 r
         }
     }
 
+    vec3 origin = offset_ray_origin(s.position, s.position_error, s.geometric_normal, wi);
     vec3 direction = wi;
     if (!infinite && !surroundings) {
         if (area) {

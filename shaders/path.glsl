@@ -2,6 +2,7 @@
 
 struct Path {
     vec3 origin;        // of the ray to trace next
+    vec3 from;          // the point of the surface that it leaves
     vec3 direction;
     vec3 throughput;    // what a unit of radiance along that ray adds to the pixel
     vec3 radiance;      // what was found so far
@@ -14,7 +15,7 @@ struct Path {
 Path camera_path(uvec2 pixel, uint pixel_index, uint sample_index) {
     vec3 origin, direction;
     sensor_ray(pixel, pixel_index, sample_index, origin, direction);
-    return Path(origin, direction, vec3(1.0), vec3(0.0), 0u, IMPULSE, 1.0, vec3(1.0));
+    return Path(origin, origin, direction, vec3(1.0), vec3(0.0), 0u, IMPULSE, 1.0, vec3(1.0));
 }
 
 bool is_finite(vec3 v) {
@@ -48,7 +49,7 @@ bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uin
     if (AREA_LUMINAIRES && material.emission.rgb != vec3(0.0)) {
         float density = 0.0;
         if (LIGHT_SAMPLING == LIGHT_MIS && path.pdf != IMPULSE) {
-            density = triangle_density(path.origin, path.direction, hit, material.emission.w);
+            density = triangle_density(path.from, path.direction, hit, material.emission.w);
         }
         path.radiance += path.throughput * material.emission.rgb * emission_weight(path.pdf, density);
     }
@@ -101,6 +102,7 @@ bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uin
         reweighted = alive;
         path.throughput /= alive;
     }
+    path.from = s.position;
     path.origin = offset_ray_origin(s.position, s.position_error, s.geometric_normal, next.wi);
     path.direction = next.wi;
     path.pdf = next.pdf == IMPULSE ? IMPULSE : next.pdf * reweighted;

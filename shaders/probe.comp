@@ -119,7 +119,7 @@ void main() {
         Luminaire light = luminaires[x.w];
         vec3 v[3];
         float omega;
-        if (is_near(uintBitsToFloat(x.xyz), light.a.xyz, light.b.xyz, light.c.xyz, light.normal.xyz, light.b.w, v, omega)) {
+        if (is_near(uintBitsToFloat(x.xyz), light.a.xyz, light.b.xyz, light.c.xyz, light.b.w, v, omega)) {
             result = floatBitsToUint(vec4(spherical_triangle(v, omega, uintBitsToFloat(y.xy)), omega));
         }
         break;

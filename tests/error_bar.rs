@@ -24,7 +24,8 @@ fn the_estimated_error_is_the_true_one() {
         Backend::ComputeBvh
     } else {
         assert!(std::env::var_os("LUMINAIRE_REQUIRE_GPU").is_none_or(|v| v != "1"), "{}", bench.device);
-        let _ = writeln!(std::io::stderr(), "SKIP: the error bar on Vulkan ({}); the reference is tested", bench.device);
+        let _ =
+            writeln!(std::io::stderr(), "SKIP: the error bar on Vulkan ({}); the reference is tested", bench.device);
         Backend::Cpu
     };
     let scenes: [(&str, fn(u32, u32) -> Scene); 3] =
