@@ -71,7 +71,15 @@ fn glossy_plates() {
         assert!(both.points.iter().all(|p| p.y < 0.5), "{size}: {both:?}");
         let (light, roulette) = (series(noise, "light sampling"), series(noise, "both, with roulette"));
         for (light, roulette) in light.points.iter().zip(&roulette.points) {
-            assert!(!(roulette.y > 1.2 * light.y), "{size} lamp, exponent {:e}: {} {}", light.x, roulette.y, light.y);
+            // Where less than half of the light was found, the noise is not known.
+            let known = light.y.is_finite() && roulette.y.is_finite();
+            assert!(
+                !known || roulette.y <= 1.2 * light.y,
+                "{size} lamp, exponent {:e}: {} {}",
+                light.x,
+                roulette.y,
+                light.y
+            );
         }
     }
 }
@@ -90,7 +98,8 @@ fn near_and_far_lamps() {
     let default = series(noise, "by solid angle, MIS");
     assert!(default.points.iter().all(|p| p.y < 0.2), "{default:?}");
     // A variance of 500 times the squared mean at a hundredth, or so little of the light was found that it is not known.
-    assert!(!(series(noise, "by area").points[1].y < 100.0));
+    let by_area = series(noise, "by area").points[1].y;
+    assert!(by_area.is_nan() || by_area > 100.0, "{by_area}");
 }
 
 /// So near that the rounding of the floor counts, what light sampling and paths find still adds up: the two see the lamp from the same

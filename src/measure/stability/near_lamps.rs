@@ -168,7 +168,7 @@ fn farthest<'a>(series: impl IntoIterator<Item = &'a Series>, range: std::ops::R
 
 fn of_distance(noise: &[Series], fireflies: &[Series], shares: &[Series], gpu: &[Series], tally: &Tally) -> Findings {
     let default = gpu.iter().skip(1).step_by(2);
-    let lost = default.flat_map(|s| &s.points).filter(|p| p.y < 0.5).map(|p| p.x).reduce(f64::max);
+    let lost = default.flat_map(|s| &s.points).filter(|p| p.y < 0.95).map(|p| p.x).reduce(f64::max);
     Findings {
         starts: format!(
             "A sample varies by more than ten times its mean (variance above 100): chance alone {}, by area {}, by solid angle {}, by \
@@ -185,7 +185,7 @@ fn of_distance(noise: &[Series], fireflies: &[Series], shares: &[Series], gpu: &
              ones never. {} Nearer than a few millionths of the \
              floor's own size that is the rounding of single precision: a ray starts off its surface by as much, and so behind the lamp.",
             highest(&fireflies[1]),
-            lost.map_or("The GPU finds the light at every distance.".into(), |x| format!("The GPU finds nothing at {x:.0e} and nearer.")),
+            lost.map_or("The GPU finds the light at every distance.".into(), |x| format!("The GPU loses light at {x:.0e} and nearer.")),
         ),
         mends: format!(
             "By solid angle where the lamp is near, by area where it is far, and MIS over both: its largest sample is {:.1} times the \
