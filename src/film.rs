@@ -2,7 +2,7 @@
 
 mod error;
 
-pub use error::{ErrorEstimate, ErrorMap, REL_MSE_FLOOR};
+pub use error::{ErrorEstimate, ErrorMap, INTERVAL_95, REL_MSE_FLOOR};
 
 use crate::sampling::PARTS;
 use crate::{Error, Result};

@@ -14,7 +14,7 @@ use std::io::Write;
 /// The ratio of the estimated to the true relMSE, as the mean over the seeds: what `docs/accuracy.md` promises. Over six seeds it varies by
 /// 2 to 4 % (printed), so that a right program would leave these bounds with a probability below 1e-4 a scene.
 const PROMISE: std::ops::RangeInclusive<f64> = 0.8..=1.25;
-/// The part of the values within 1.96 standard errors of the truth; the same promise.
+/// The part of the values whose 95 % interval holds the truth; the same promise.
 const COVERED: std::ops::RangeInclusive<f64> = 0.92..=0.98;
 
 #[test]
@@ -33,7 +33,7 @@ fn the_estimated_error_is_the_true_one() {
     for (name, scene) in scenes {
         let mut scene = scene(32, 32);
         scene.settings.sampler = Sampler::Sobol;
-        let found = calibrate(&|scene| bench.tracer(scene, backend), &scene, &[32, 128], 6, 4096).expect("it renders");
+        let found = calibrate(&|scene| bench.tracer(scene, backend), &scene, &[64, 256], 6, 8192).expect("it renders");
         for c in found {
             let ratio = c.ratio();
             println!("{name}: {} +- {}, {c:?}", ratio.mean, ratio.error);

@@ -19,7 +19,7 @@ const WIDTH: u32 = 32;
 const TRUTH: u32 = 8192;
 /// The ratio that is promised.
 const PROMISE: std::ops::RangeInclusive<f64> = 0.8..=1.25;
-/// The part of the values within 1.96 standard errors that is promised.
+/// The part of the values that is promised to have the truth in their 95 % interval.
 const COVERED: std::ops::RangeInclusive<f64> = 0.92..=0.98;
 
 /// Measures every scene on the fastest backend for it here.
@@ -27,7 +27,7 @@ pub fn measure(bench: &Workbench, images: &Path, texts: &mut Texts) -> Result<()
     let backend = if bench.backends().contains(&Backend::ComputeBvh) { Backend::ComputeBvh } else { Backend::Cpu };
     let (width, truth) = if bench.long { (2 * WIDTH, 4 * TRUTH) } else { (WIDTH, TRUTH) };
     let mut table = String::from(
-        "| scene | samples | true relative error | estimated / true relMSE: mean | least to most of the seeds | within 1.96 standard errors | fireflies | relMSE with them / without |\n\
+        "| scene | samples | true relative error | estimated / true relMSE: mean | least to most of the seeds | in the 95 % interval | fireflies | relMSE with them / without |\n\
          |---|---|---|---|---|---|---|---|\n",
     );
     let mut chart = Chart {

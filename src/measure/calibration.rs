@@ -2,7 +2,7 @@
 
 use super::statistics::Estimate;
 use crate::Result;
-use crate::film::{Film, REL_MSE_FLOOR};
+use crate::film::{Film, INTERVAL_95, REL_MSE_FLOOR};
 use crate::render::{Limits, Tracer, render};
 use crate::scene::Scene;
 use std::sync::atomic::AtomicBool;
@@ -21,7 +21,7 @@ pub struct Calibration {
     pub ratios: Vec<f64>,
     /// Estimated over true mean square error (not relative), likewise.
     pub mse_ratios: Vec<f64>,
-    /// The part of the values (pixels, channels and seeds; no fireflies) whose truth is within 1.96 standard errors.
+    /// The part of the values (pixels, channels and seeds; no fireflies) whose truth is within [`INTERVAL_95`] standard errors.
     pub covered: f64,
     /// The part of the pixels that are fireflies.
     pub fireflies: f64,
@@ -86,7 +86,7 @@ pub fn calibrate(
                     if !errors.firefly[pixel] {
                         square += off - own;
                         relative += (off - own) / scale;
-                        covered += u64::from(off <= 1.96 * 1.96 * (estimated + own));
+                        covered += u64::from(off <= INTERVAL_95 * INTERVAL_95 * (estimated + own));
                         values += 1;
                     }
                 }
