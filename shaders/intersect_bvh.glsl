@@ -103,10 +103,12 @@ bool intersect_triangle(TraversalRay ray, float t_max, uint triangle, out float 
     float reciprocal = 1.0 / determinant;
     float depth = (u * a.z + v * b.z + w * c.z) * reciprocal;
     // Of a narrow triangle u, v and w are small differences of large products. Its plane is known better: by its short edges, as they are
-    // before the origin is subtracted. A ray within that plane has no one distance to it; and none lies outside the corners'.
+    // before the origin is subtracted. A ray within that plane has no one distance to it, corners in one line have no plane; and no distance
+    // lies outside the corners'.
     vec3 n = permute(triangle_normal(corner_a, corner_b, corner_c), ray.axis);
     float slope = dot(n, vec3(ray.shear.xy, 1.0));
-    if (abs(slope) > 1e-6 * largest(abs(n))) {
+    bool has_plane = largest(abs(n)) > 1e-4 * shorter_edges(corner_a, corner_b, corner_c);
+    if (has_plane && abs(slope) > 1e-6 * largest(abs(n))) {
         depth = clamp(dot(n, a) / slope, min(min(a.z, b.z), c.z), max(max(a.z, b.z), c.z));
     }
     t = depth * ray.shear.z;

@@ -192,7 +192,12 @@ pub(super) fn lost(hits: &[Option<Hit>]) -> usize {
 /// The 99.9th percentile of how far hits are from the reference's along unit rays, over both finding something.
 pub(super) fn distance_error(hits: &[Option<Hit>], expected: &[Option<Hit>]) -> f64 {
     let both = hits.iter().zip(expected).filter_map(|(h, e)| Some((h.as_ref()?.t - e.as_ref()?.t).abs()));
-    let mut errors: Vec<f64> = both.collect();
+    percentile_999(both)
+}
+
+/// The 99.9th percentile; NaN of nothing.
+pub(super) fn percentile_999(errors: impl Iterator<Item = f64>) -> f64 {
+    let mut errors: Vec<f64> = errors.collect();
     errors.sort_by(f64::total_cmp);
     errors.len().checked_sub(1).map_or(f64::NAN, |last| errors[last - last / 1000])
 }
