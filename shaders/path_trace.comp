@@ -48,13 +48,17 @@ void main() {
     if (id.x >= batch.tile_width || id.y >= batch.tile_height) return;
     uvec2 pixel = uvec2(batch.tile_x, batch.tile_y) + id.xy;
     uint pixel_index = pixel.y * frame.width + pixel.x;
-    // Each z takes `group` samples of one part, which are PARTS apart.
+    // Each z takes `group` samples of every part, which are PARTS apart.
     uint stride = batch.group * PARTS;
-    uint first = batch.first_sample + id.z / PARTS * stride;
+    uint first = batch.first_sample + id.z * stride;
     uint end = min(first + stride, batch.end_sample);
-    uint sample_index = first + id.z % PARTS;
+    uint last_part = min(PARTS, end - first) - 1u;
+    uint pixels = batch.tile_width * batch.tile_height;
+    uint slot = id.z * PARTS * pixels + id.y * batch.tile_width + id.x;
 
     // One loop over the bounces of all samples: a lane whose path ends starts its next one while the others go on.
+    uint part = 0u;
+    uint sample_index = first;
     vec3 sum = vec3(0.0);
     uint rays = 0u;
     uint not_finite = 0u;
@@ -69,10 +73,16 @@ void main() {
                 if (named < dropped.samples.length()) dropped.samples[named] = uvec2(pixel_index, sample_index);
             }
             sample_index += PARTS;
-            if (sample_index >= end) break;
+            if (sample_index >= end) {
+                sums[slot + part * pixels] = PixelSum(float[3](sum.x, sum.y, sum.z), rays, not_finite);
+                if (part == last_part) break;
+                part++;
+                sample_index = first + part;
+                sum = vec3(0.0);
+                rays = 0u;
+                not_finite = 0u;
+            }
             path = camera_path(pixel, pixel_index, sample_index);
         }
     }
-    uint slot = (id.z * batch.tile_height + id.y) * batch.tile_width + id.x;
-    sums[slot] = PixelSum(float[3](sum.x, sum.y, sum.z), rays, not_finite);
 }

@@ -137,6 +137,9 @@ pub struct Rendered {
     pub end: End,
 }
 
+/// Seconds between two estimates of the error for the progress.
+const ESTIMATE_SECONDS: f64 = 1.0;
+
 /// Renders `width` by `height` pixels until a limit is met or `stop` is set, calling `progress` after each batch.
 ///
 /// # Errors
@@ -161,6 +164,7 @@ pub fn render(
     let mut schedule = Schedule::new((width, height), limits.spp.unwrap_or(u32::MAX));
     let mut budget = FIRST_BUDGET;
     let start = Instant::now();
+    let mut next_estimate = ESTIMATE_SECONDS;
     while let Some(batch) = schedule.next(budget, max_sums) {
         if stop.load(Ordering::Relaxed) {
             rendered.end = End::Stopped;
@@ -190,8 +194,12 @@ pub fn render(
         rendered.progress.rays += traced.sums.iter().map(|s| u64::from(s.rays)).sum::<u64>();
         rendered.progress.seconds = start.elapsed().as_secs_f64();
         let pass_done = schedule.pass_done();
-        if pass_done.is_some() {
+        // Where nothing depends on it, only so often that it costs nothing.
+        if pass_done.is_some() && (limits.noise.is_some() || start.elapsed().as_secs_f64() >= next_estimate) {
+            let before = start.elapsed().as_secs_f64();
             rendered.progress.error = rendered.film.error();
+            let now = start.elapsed().as_secs_f64();
+            next_estimate = now + ESTIMATE_SECONDS.max(20.0 * (now - before));
         }
         progress(&rendered.progress);
         if let (Some(samples), Some(limit), Some(error)) = (pass_done, limits.noise, rendered.progress.error) {

@@ -8,6 +8,7 @@ use super::{Buffer, Device, Kernel, layout};
 use crate::Result;
 use crate::film::{Batch, PixelSum, SampleId};
 use crate::render::{Traced, Tracer};
+use crate::sampling::PARTS;
 use crate::scene::Scene;
 use ash::vk;
 use gpu_allocator::MemoryLocation;
@@ -96,7 +97,7 @@ impl Tracer for GpuTracer {
             group: batch.group,
         };
         let size = (count * size_of::<layout::PixelSum>()) as u64;
-        let workgroups = [tile.width.div_ceil(WORKGROUP), tile.height.div_ceil(WORKGROUP), groups];
+        let workgroups = [tile.width.div_ceil(WORKGROUP), tile.height.div_ceil(WORKGROUP), groups.div_ceil(PARTS)];
         let device_seconds = commands::submit(&self.device, "path trace", |cmd| {
             let recorder = Recorder { device: &self.device, cmd };
             recorder.clear(&self.dropped);
