@@ -6,7 +6,7 @@
     python3 scripts/mutations.py --list
 
 The copy is what git has of the working tree (tracked files as they are now), in target/mutations. Wants what `make test` wants. Exit code
-0 if every bug is caught, 1 if one is not, 2 if a bug does not fit the source any more.
+0 if every bug is caught, 1 if one is not, 2 if a bug does not fit the source any more or the tests cannot be run.
 """
 
 import os
@@ -92,7 +92,8 @@ def run(arguments):
         return None
     failed = [line.split()[1] for line in done.stdout.splitlines() if line.startswith("test ") and line.endswith("FAILED")]
     if not failed:
-        sys.exit(f"the copy does not build, or the tests do not run:\n{done.stderr[-3000:]}")
+        print(f"the copy does not build, or the tests do not run:\n{done.stderr[-3000:]}", file=sys.stderr)
+        sys.exit(2)
     return f"{arguments[1]}: {failed[0]}" + (f" and {len(failed) - 1} more" if len(failed) > 1 else "")
 
 
@@ -128,7 +129,8 @@ def main():
     for kind in kinds:
         failed = run(kind)
         if failed:
-            sys.exit(f"without any bug {failed} fails already")
+            print(f"without any bug {failed} fails already", file=sys.stderr)
+            sys.exit(2)
     missed = 0
     for mutation in chosen:
         start = time.monotonic()

@@ -1,4 +1,4 @@
-// The path tracer: every invocation adds up a group of samples of one pixel.
+// The path tracer: every invocation adds up a group of samples of every part of one pixel.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #ifdef RAY_QUERY
@@ -43,6 +43,9 @@ layout(set = 0, binding = 8, std430) buffer Dropped {
     uvec2 samples[];
 } dropped;
 
+// The twin is in src/film.rs.
+const float MOST_RADIANCE = 1e36;
+
 void main() {
     uvec3 id = gl_GlobalInvocationID;
     if (id.x >= batch.tile_width || id.y >= batch.tile_height) return;
@@ -51,13 +54,15 @@ void main() {
     // Each z takes `group` samples of every part, which are PARTS apart.
     uint stride = batch.group * PARTS;
     uint first = batch.first_sample + id.z * stride;
-    uint end = min(first + stride, batch.end_sample);
-    uint last_part = min(PARTS, end - first) - 1u;
+    // From `first` on, so that the last numbers of all do not overflow.
+    uint count = min(stride, batch.end_sample - first);
+    uint last_part = min(PARTS, count) - 1u;
     uint pixels = batch.tile_width * batch.tile_height;
     uint slot = id.z * PARTS * pixels + id.y * batch.tile_width + id.x;
 
     // One loop over the bounces of all samples: a lane whose path ends starts its next one while the others go on.
     uint part = 0u;
+    uint offset = 0u;
     uint sample_index = first;
     vec3 sum = vec3(0.0);
     uint rays = 0u;
@@ -65,23 +70,24 @@ void main() {
     Path path = camera_path(pixel, pixel_index, sample_index);
     while (true) {
         if (!extend_path(path, pixel_index, sample_index, rays)) {
-            if (is_finite(path.radiance)) {
+            // What is larger would overflow when it is added up.
+            if (is_finite(path.radiance) && largest(abs(path.radiance)) < MOST_RADIANCE) {
                 sum += path.radiance;
             } else {
                 not_finite++;
                 uint named = atomicAdd(dropped.count, 1u);
                 if (named < dropped.samples.length()) dropped.samples[named] = uvec2(pixel_index, sample_index);
             }
-            sample_index += PARTS;
-            if (sample_index >= end) {
+            offset += PARTS;
+            if (offset >= count) {
                 sums[slot + part * pixels] = PixelSum(float[3](sum.x, sum.y, sum.z), rays, not_finite);
                 if (part == last_part) break;
-                part++;
-                sample_index = first + part;
+                offset = ++part;
                 sum = vec3(0.0);
                 rays = 0u;
                 not_finite = 0u;
             }
+            sample_index = first + offset;
             path = camera_path(pixel, pixel_index, sample_index);
         }
     }

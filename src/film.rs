@@ -72,6 +72,9 @@ pub struct PixelSum {
     pub dropped: u32,
 }
 
+/// A sample with a larger radiance counts as not finite: sums of such would soon exceed `f32`.
+pub const MOST_RADIANCE: f64 = 1e36;
+
 /// One sample of one pixel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct SampleId {
@@ -168,7 +171,8 @@ impl Film {
     /// How many finite samples each part of a pixel has.
     pub fn part_samples(&self, pixel: usize) -> [u32; PARTS as usize] {
         std::array::from_fn(|part| {
-            let taken = (self.samples[pixel] + PARTS - 1 - part as u32) / PARTS;
+            let samples = self.samples[pixel];
+            let taken = samples / PARTS + u32::from((part as u32) < samples % PARTS);
             if self.dropped.is_empty() { taken } else { taken - self.dropped.get(&(pixel, part)).unwrap_or(&0) }
         })
     }
@@ -196,8 +200,8 @@ impl Film {
     }
 }
 
-/// Bytes a pixel: the film's, 24 for its linear picture and the error, 40 for the encoders.
-const BYTES_PER_PIXEL: u64 = 24 * PARTS as u64 + 4 + 24 + 40;
+/// Bytes a pixel: the film's, 200 while its error is estimated, or while it is written with it.
+const BYTES_PER_PIXEL: u64 = 24 * PARTS as u64 + 4 + 200;
 
 /// Refuses a film that `available` bytes cannot hold.
 fn check_memory(width: u32, height: u32, available: Option<u64>) -> Result<()> {
@@ -262,6 +266,9 @@ mod tests {
         assert_eq!(film.sums[6].map(|part| part[1]), [2.0, 20.0, 200.0, 0.0]);
         assert_eq!(film.samples, [0, 0, 0, 0, 0, 3, 3, 0, 0, 3, 3, 0]);
         assert_eq!(film.part_samples(5), [1, 1, 1, 0]);
+        film.samples[0] = u32::MAX;
+        assert_eq!(film.part_samples(0), [1 << 30, 1 << 30, 1 << 30, (1 << 30) - 1]);
+        film.samples[0] = 0;
         assert_eq!(film.mean(6), [74.0; 3]);
         assert_eq!(film.to_linear()[..3], [0.0; 3]);
         assert_eq!(film.to_linear()[3 * 5..3 * 6], [37.0; 3]);
@@ -298,7 +305,10 @@ mod tests {
     #[test]
     fn absurd_sizes_are_refused() {
         let error = check_memory(65536, 65536, Some(8 << 30)).unwrap_err().to_string();
-        assert!(error.contains("65536 x 65536") && error.contains("656.0 GiB") && error.contains("8.0 GiB"), "{error}");
+        assert!(
+            error.contains("65536 x 65536") && error.contains("1200.0 GiB") && error.contains("8.0 GiB"),
+            "{error}"
+        );
         assert!(check_memory(1920, 1080, Some(8 << 30)).is_ok());
     }
 }

@@ -3,7 +3,8 @@
 //! Samples are summed in groups of one part each ([`PARTS`]), whose bounds depend on the sample's index alone:
 //! within a part 0, 1, 2, 4, 8, 16, then every 16. A batch is one tile and some whole groups of every part, as many as a device does in the time it
 //! asks for. How the work was cut into batches therefore never shows in the picture: the same groups are added in the same order, to
-//! the last bit. (A limit of the noise may cut a group in two, which changes the rounding of its sum.)
+//! the last bit. A limit of the noise is looked at after numbers of samples that follow from the picture alone, so that neither it depends on
+//! the device's speed.
 
 mod schedule;
 
@@ -22,7 +23,7 @@ pub const DROPPED_NAMED: usize = 15;
 pub struct Traced {
     /// One sum a pixel and group: group by group, in each the tile's rows from the top.
     pub sums: Vec<PixelSum>,
-    /// Samples that were not finite and are left out, the first ones by pixel and sample; none in a sound scene.
+    /// Some of the samples that were not finite and are left out; none in a sound scene.
     pub dropped: Vec<SampleId>,
     /// Seconds that the device was busy by its own clock, if it has one.
     pub device_seconds: Option<f64>,
@@ -129,7 +130,7 @@ pub struct Rendered {
     pub progress: Progress,
     /// How many samples were not finite and are left out.
     pub dropped: u64,
-    /// Some of them, the first ones of each batch that had any; at most [`DROPPED_NAMED`].
+    /// Some of them, in the order in which they were rendered; at most [`DROPPED_NAMED`].
     pub dropped_samples: Vec<SampleId>,
     /// Seconds that the device was busy by its own clock; 0 if it has none.
     pub device_seconds: f64,
@@ -165,6 +166,11 @@ pub fn render(
     let mut budget = FIRST_BUDGET;
     let start = Instant::now();
     let mut next_estimate = ESTIMATE_SECONDS;
+    // Where the noise is looked at next.
+    let mut aim = LEAST_FOR_NOISE;
+    if limits.noise.is_some() {
+        schedule.aim(aim);
+    }
     while let Some(batch) = schedule.next(budget, max_sums) {
         if stop.load(Ordering::Relaxed) {
             rendered.end = End::Stopped;
@@ -194,21 +200,24 @@ pub fn render(
         rendered.progress.rays += traced.sums.iter().map(|s| u64::from(s.rays)).sum::<u64>();
         rendered.progress.seconds = start.elapsed().as_secs_f64();
         let pass_done = schedule.pass_done();
+        let at_aim = limits.noise.is_some() && pass_done == Some(aim);
         // Where nothing depends on it, only so often that it costs nothing.
-        if pass_done.is_some() && (limits.noise.is_some() || start.elapsed().as_secs_f64() >= next_estimate) {
+        if at_aim || pass_done.is_some() && start.elapsed().as_secs_f64() >= next_estimate {
             let before = start.elapsed().as_secs_f64();
             rendered.progress.error = rendered.film.error();
             let now = start.elapsed().as_secs_f64();
             next_estimate = now + ESTIMATE_SECONDS.max(20.0 * (now - before));
         }
         progress(&rendered.progress);
-        if let (Some(samples), Some(limit), Some(error)) = (pass_done, limits.noise, rendered.progress.error) {
-            let relative = error.relative();
-            if samples >= LEAST_FOR_NOISE && relative <= limit {
+        if let Some(limit) = limits.noise.filter(|_| at_aim) {
+            // No estimate at all: every sample was lost.
+            let relative = rendered.progress.error.map_or(f64::INFINITY, |error| error.relative());
+            if relative <= limit {
                 rendered.end = End::Noise;
                 break;
             }
-            schedule.aim(samples_to_reach(samples, relative, limit));
+            aim = samples_to_reach(aim, relative, limit);
+            schedule.aim(aim);
         }
     }
     rendered.progress.seconds = start.elapsed().as_secs_f64();
@@ -221,9 +230,9 @@ pub fn render(
 /// at most as many again as there are. The estimate of an error from few samples is not to be relied on.
 fn samples_to_reach(samples: u32, relative: f64, limit: f64) -> u32 {
     let needed = f64::from(samples) * (relative / limit).powi(2);
-    let least = samples + samples / 32 + 1;
+    let least = samples.saturating_add(samples / 32 + 1);
     // Rust's `as` saturates.
-    ((1.01 * needed) as u32).clamp(least, samples.saturating_mul(2).max(least)).max(LEAST_FOR_NOISE)
+    ((1.01 * needed) as u32).clamp(least, samples.saturating_mul(2).max(least))
 }
 
 #[cfg(test)]
@@ -382,6 +391,31 @@ mod tests {
         let rendered = run(&mut fake, (64, 64), 4);
         assert!(matches!(rendered.end, End::Failed(Error::NoDevice(_))));
         assert_eq!((rendered.film.least_samples(), rendered.film.most_samples()), (0, 4));
+    }
+
+    #[test]
+    fn the_next_look_at_the_noise() {
+        // Four times the error needs sixteen times the samples, and is not believed at once.
+        assert_eq!(samples_to_reach(100, 0.4, 0.1), 200);
+        assert_eq!(samples_to_reach(100, 0.11, 0.1), 122);
+        assert_eq!(samples_to_reach(100, 0.1001, 0.1), 104);
+        assert_eq!(samples_to_reach(100, f64::INFINITY, 0.1), 200);
+        assert_eq!(samples_to_reach(u32::MAX - 1, 0.2, 0.1), u32::MAX);
+    }
+
+    #[test]
+    fn the_noise_ends_a_render_after_the_same_samples_at_any_speed() {
+        let mut films = Vec::new();
+        for seconds in [1e-4, 3e-3, 1e9] {
+            let limits = Limits { noise: Some(0.5), spp: Some(100_000), seconds: None };
+            let mut fake = Fake::new(37, 10_000_000, seconds);
+            let rendered = render(&mut fake, (37, 23), limits, &mut |_| {}, &AtomicBool::new(false)).unwrap();
+            assert!(matches!(rendered.end, End::Noise), "{:?}", rendered.end);
+            assert!(rendered.progress.error.unwrap().relative() <= 0.5);
+            assert!(rendered.film.most_samples() > LEAST_FOR_NOISE);
+            films.push(rendered.film);
+        }
+        assert!(films.iter().all(|film| *film == films[0]));
     }
 
     #[test]

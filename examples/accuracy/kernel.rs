@@ -4,7 +4,7 @@ use crate::Texts;
 use luminaire::backend::Backend;
 use luminaire::measure::Workbench;
 use luminaire::measure::statistics::{Image, compare, render, sidak, total, two_sided};
-use luminaire::scene::{self, Integrator, Scene};
+use luminaire::scene::{self, Integrator, Sampler, Scene};
 use std::error::Error;
 use std::path::Path;
 
@@ -47,12 +47,15 @@ pub fn measure(bench: &Workbench, texts: &mut Texts) -> Result<(), Box<dyn Error
         }
         let short_reference = picture(&short, Backend::Cpu, EQUAL)?;
         let reference = picture(&scene, Backend::Cpu, EQUAL)?;
-        let long_reference = picture(&scene, Backend::Cpu, samples)?;
+        // Independent numbers: successive groups of Sobol points depend on each other.
+        let mut independent = scene.clone();
+        independent.settings.sampler = Sampler::Independent;
+        let long_reference = picture(&independent, Backend::Cpu, samples)?;
         for (index, &backend) in (1..).zip(&backends) {
             let one = differences(&picture(&short, backend, EQUAL)?, &short_reference);
             let full = differences(&picture(&scene, backend, EQUAL)?, &reference);
             // Other seeds for each: independent pictures.
-            let mut other = scene.clone();
+            let mut other = independent.clone();
             other.settings.seed = scene.settings.seed + index;
             let long = picture(&other, backend, samples)?;
             let (a, b) = (total(&long), total(&long_reference));

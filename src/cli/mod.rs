@@ -160,6 +160,9 @@ pub struct CompareOptions {
     pub stats: Option<PathBuf>,
 }
 
+/// Options that mean nothing where nothing is rendered.
+const REPLAY_CONFLICTS: [&str; 6] = ["output", "error_map", "stats", "spp", "time", "noise"];
+
 /// What to render, and how.
 #[derive(Debug, clap::Args)]
 #[command(after_help = format!("{RENDER_EXAMPLES}{EXIT_CODES}"))]
@@ -206,7 +209,7 @@ pub struct RenderOptions {
     pub estimator: estimator::EstimatorOptions,
 
     /// Trace one sample of one pixel again and print its path, instead of rendering; with --sample.
-    #[arg(long, value_name = "X,Y", value_parser = pixel, requires = "sample", help_heading = "Replay")]
+    #[arg(long, value_name = "X,Y", value_parser = pixel, requires = "sample", conflicts_with_all = REPLAY_CONFLICTS, help_heading = "Replay")]
     pub pixel: Option<[u32; 2]>,
     /// The number of the sample that --pixel traces.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..i64::from(u32::MAX)), requires = "pixel", help_heading = "Replay")]

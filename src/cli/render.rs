@@ -104,7 +104,7 @@ fn finish(
 ) -> Result<ExitCode> {
     if let Some(first) = rendered.dropped_samples.first() {
         say(&format!(
-            "warning: {} samples were not finite and are left out; the first is replayed by --pixel {},{} --sample {}",
+            "warning: samples that were not finite are left out ({}); with the same options, --pixel {},{} --sample {} replays one",
             rendered.dropped,
             first.pixel % scene.film.width,
             first.pixel / scene.film.width,
@@ -237,6 +237,14 @@ fn outputs(options: &RenderOptions) -> Result<Vec<PathBuf>> {
         image_io::check_output(path)?;
     }
     if let Some(path) = &options.error_map {
+        if outputs.contains(path) {
+            return Err(Error::Usage(format!("--error-map {}: the picture itself is written there", path.display())));
+        }
+        if options.spp == Some(1) {
+            return Err(Error::Usage(
+                "--error-map wants at least --spp 2: one sample tells nothing of its error".into(),
+            ));
+        }
         if image_io::Format::of(path)? != image_io::Format::Png {
             return Err(Error::Usage(format!("--error-map {}: the name must end in .png", path.display())));
         }

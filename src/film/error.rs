@@ -1,8 +1,8 @@
 //! The error bar: how far a picture is from the truth, told from the spread of the independent parts of its samples.
 //!
-//! The variance of a pixel's mean follows from the means of its [`PARTS`](crate::sampling::PARTS) parts. Four numbers tell a variance badly, and where the light
-//! comes in rare bright samples they tell too little (all of them may have missed it), so a pixel's error is that of its 3 x 3
-//! neighbourhood. Pixels that stand out of theirs by what few parts hold, *fireflies*, are counted apart: by itself nobody can tell one from a
+//! The variance of a pixel's mean follows from the means of its [`PARTS`](crate::sampling::PARTS) parts. Four numbers tell a variance
+//! badly, and where the light comes in rare bright samples they tell too little (all of them may have missed it), so a pixel's error
+//! is that of its 3 x 3 neighbourhood. Pixels that stand out of theirs by what few parts hold, *fireflies*, are counted apart: by itself nobody can tell one from a
 //! small bright object.
 
 use super::Film;
@@ -14,7 +14,8 @@ pub const REL_MSE_FLOOR: f64 = 0.01;
 /// The truth of 95 % of all values is within so many standard errors: Student's t for 27 degrees of freedom, 3 of each of 9 pixels.
 pub const INTERVAL_95: f64 = 2.052;
 
-/// A pixel is a firefly if at most two of its four parts hold its radiance ...
+/// A pixel is a firefly if at most two of its four parts hold its radiance (the variance of the mean is the mean's square if one of them does,
+/// a third of it if two do, a ninth if three do) ...
 const FIREFLY_VARIANCE: f64 = 1.0 / 6.0;
 /// ... and that is so many times its neighbours',
 const FIREFLY_CONTRAST: f64 = 5.0;
@@ -50,23 +51,37 @@ pub struct ErrorMap {
     pub standard_error: Vec<[f32; 3]>,
     /// The same over the radiance, or over 0.1 where that is darker: the root mean square of the channels.
     pub relative: Vec<f32>,
-    /// Whether the pixel is a firefly; its own parts alone tell its error then.
+    /// Whether the pixel is a firefly, whose own parts alone tell its error, or has too few finite samples to tell it.
     pub firefly: Vec<bool>,
     /// The picture as a whole.
     pub total: ErrorEstimate,
 }
 
 impl Film {
-    /// The estimated error of the picture; none if a pixel has samples in fewer than two parts.
+    /// The estimated error of the picture; none if no pixel has samples in two parts.
     pub fn error(&self) -> Option<ErrorEstimate> {
         Some(self.error_map()?.total)
     }
 
-    /// The estimated error of every pixel; none if a pixel has samples in fewer than two parts.
+    /// The estimated error of every pixel; none if no pixel has samples in two parts.
     pub fn error_map(&self) -> Option<ErrorMap> {
         // The fourth "channel" is the mean of the others, by which fireflies are told.
-        let own: Vec<[Measured; 4]> =
-            (0..self.pixels()).into_par_iter().map(|pixel| self.measured(pixel)).collect::<Option<_>>()?;
+        let told: Vec<Option<[Measured; 4]>> =
+            (0..self.pixels()).into_par_iter().map(|pixel| self.measured(pixel)).collect();
+        if told.iter().all(Option::is_none) {
+            return None;
+        }
+        // A pixel without samples in two parts (because they were not finite, or the render has just begun) tells nothing, and is left out
+        // like a firefly.
+        let unknown = |pixel: usize| [0, 1, 2].map(|c| Measured { mean: self.mean(pixel)[c], variance: 0.0 });
+        let own: Vec<[Measured; 4]> = (told.iter().enumerate())
+            .map(|(pixel, told)| {
+                told.unwrap_or_else(|| {
+                    let [r, g, b] = unknown(pixel);
+                    [r, g, b, g]
+                })
+            })
+            .collect();
         let map = |f: &(dyn Fn(usize) -> [f64; 4] + Sync)| -> Vec<[f64; 4]> {
             (0..own.len()).into_par_iter().map(f).collect()
         };
@@ -83,10 +98,11 @@ impl Film {
                 if weights > 0.0 { sum / weights } else { own[pixel][c].mean }
             })
         });
-        let firefly: Vec<bool> = (own.par_iter().zip(&expected))
-            .map(|([.., grey], [.., expected])| {
-                grey.variance > FIREFLY_VARIANCE * grey.mean * grey.mean
-                    && grey.mean > FIREFLY_CONTRAST * (expected + FIREFLY_FLOOR)
+        let firefly: Vec<bool> = (own.iter().zip(&expected).zip(&told))
+            .map(|(([.., grey], [.., expected]), told)| {
+                told.is_none()
+                    || grey.variance > FIREFLY_VARIANCE * grey.mean * grey.mean
+                        && grey.mean > FIREFLY_CONTRAST * (expected + FIREFLY_FLOOR)
             })
             .collect();
 
@@ -252,6 +268,12 @@ mod tests {
     #[test]
     fn nothing_is_told_from_one_part_and_no_error_from_noiseless_samples() {
         assert_eq!(film(1, 0.5, |_, _| 1.0).error(), None);
+        // One pixel that has lost all its samples does not take the others' error away.
+        let mut lost = film(8, 0.5, |_, _| 1.0);
+        (0..4).for_each(|part| assert_eq!(lost.dropped.insert((77, part), 2), None));
+        let errors = lost.error_map().unwrap();
+        assert!(errors.firefly[77] && errors.total.fireflies == 1 && errors.total.rmse > 0.0);
+        assert!(errors.standard_error.iter().flatten().all(|e| e.is_finite()));
         let error = film(8, 0.0, |x, _| f64::from(x)).error().unwrap();
         assert_eq!(error, ErrorEstimate { rmse: 0.0, rel_mse: 0.0, fireflies: 0 });
         assert_eq!(film(8, 0.0, |_, _| 0.0).error().unwrap().rel_mse, 0.0);

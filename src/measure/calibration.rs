@@ -3,7 +3,7 @@
 use super::statistics::Estimate;
 use crate::Result;
 use crate::film::{Film, INTERVAL_95, REL_MSE_FLOOR};
-use crate::render::{Limits, Tracer, render};
+use crate::render::{End, Limits, Tracer, render};
 use crate::scene::Scene;
 use std::sync::atomic::AtomicBool;
 
@@ -30,7 +30,7 @@ pub struct Calibration {
 }
 
 impl Calibration {
-    /// Estimated over true relMSE, as the ratio of the means over the seeds, and the standard error of the ratios.
+    /// Estimated over true relMSE: the mean of the seeds' ratios, and its standard error.
     pub fn ratio(&self) -> Estimate {
         Estimate::new(self.ratios.iter().copied())
     }
@@ -43,6 +43,9 @@ impl Calibration {
 ///
 /// # Errors
 /// If a tracer cannot be had, or fails.
+///
+/// # Panics
+/// If there are fewer than two samples a pixel.
 pub fn calibrate(
     open: &dyn Fn(&Scene) -> Result<Box<dyn Tracer>>,
     scene: &Scene,
@@ -55,7 +58,11 @@ pub fn calibrate(
         scene.settings.seed = seed;
         let size = (scene.film.width, scene.film.height);
         let limits = Limits { spp: Some(spp), ..Limits::default() };
-        Ok(render(open(&scene)?.as_mut(), size, limits, &mut |_| {}, &AtomicBool::new(false))?.film)
+        let rendered = render(open(&scene)?.as_mut(), size, limits, &mut |_| {}, &AtomicBool::new(false))?;
+        match rendered.end {
+            End::Failed(error) => Err(error),
+            _ => Ok(rendered.film),
+        }
     };
     let truth = picture(FIRST_SEED - 1, truth)?;
     let truth_error = truth.error_map().expect("many samples").standard_error;

@@ -26,7 +26,7 @@ mod tree;
 pub mod warp;
 
 use crate::Result;
-use crate::film::{Batch, PixelSum, SampleId};
+use crate::film::{Batch, MOST_RADIANCE, PixelSum, SampleId};
 use crate::render::{Traced, Tracer};
 use crate::scene::{LuminaireTable, Scene, widen};
 use glam::{DAffine3, DMat3, DVec3};
@@ -107,8 +107,7 @@ impl Tracer for Reference {
                 for sample in batch.group_samples(group) {
                     let (radiance, traced) = this.radiance(pixel, sample);
                     rays += traced;
-                    // What does not fit into a file's f32 is not finite there either.
-                    if radiance.as_vec3().is_finite() {
+                    if radiance.is_finite() && radiance.abs().max_element() < MOST_RADIANCE {
                         sum += radiance;
                     } else {
                         dropped.push(SampleId { pixel, sample });

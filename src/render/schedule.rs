@@ -6,8 +6,8 @@ use crate::sampling::PARTS;
 /// Samples (over all pixels) of the first batch: few, because each may be a path of ten thousand bounces.
 pub(super) const FIRST_BUDGET: u64 = 64;
 
-/// The most samples of a pixel whose groups fit one batch: as many workgroups as every Vulkan device takes along an axis.
-const MAX_PASS: u64 = 65_535 / PARTS as u64 * (LONGEST * PARTS) as u64;
+/// The most samples of a pixel in one batch: a workgroup for each group of every part, and as many as every Vulkan device takes along an axis.
+const MAX_PASS: u64 = 65_535 * (LONGEST * PARTS) as u64;
 
 /// The most samples of one group: few enough to add them up in `f32`.
 const LONGEST: u32 = 16;
@@ -104,8 +104,11 @@ impl Schedule {
     fn pass_end(&self, start: u32, budget: u64, max_sums: u64) -> u32 {
         let parts = u64::from(PARTS);
         let stride = u64::from(group_length(start)) * parts;
+        // After an end in the middle of groups, first their rest: where the next ones begin must not depend on the device's speed.
+        let begun = u64::from(start) % stride != 0;
         let pixels = u64::from(self.width) * u64::from(self.height);
         let fitting = (budget / (pixels * stride)).min(max_sums / (pixels * parts)).max(1);
+        let fitting = if begun { 1 } else { fitting };
         // Up to the longest ones the groups grow: only the first two are of equal length.
         let end = u64::from(groups_end(start)) + (fitting - 1) * stride;
         let equal = match start / PARTS {
@@ -149,14 +152,14 @@ mod tests {
         let mut schedule = Schedule::new((64, 64), 1000);
         schedule.aim(77);
         let passes: Vec<_> = std::iter::from_fn(|| schedule.next(1 << 40, 1 << 30)).map(|b| b.samples).collect();
-        assert_eq!(passes, [0..8, 8..16, 16..32, 32..64, 64..77, 77..1000]);
+        assert_eq!(passes, [0..8, 8..16, 16..32, 32..64, 64..77, 77..128, 128..1000]);
     }
 
     #[test]
     fn a_single_pixel_stays_within_the_dispatch_limit() {
         let mut schedule = Schedule::new((1, 1), u32::MAX);
         schedule.pass.end = 16 * PARTS;
-        assert_eq!(schedule.next(1 << 40, 1 << 30).map(|b| b.groups()), Some(65_535 / PARTS * PARTS));
+        assert_eq!(schedule.next(1 << 40, 1 << 30).map(|b| b.groups()), Some(65_535 * PARTS));
     }
 
     #[test]

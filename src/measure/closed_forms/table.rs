@@ -31,8 +31,8 @@ impl Row {
         let Estimate { mean, error } = self.found[backend];
         let off = mean - self.case.expected;
         let explained = (self.case.slack + ROUNDING) * self.case.expected.abs();
-        let unexplained = (off.abs() - explained).max(0.0);
-        if unexplained == 0.0 { 0.0 } else { off.signum() * unexplained / error }
+        // A mean that is no number is not explained.
+        if off.abs() <= explained { 0.0 } else { off.signum() * (off.abs() - explained) / error }
     }
 
     /// Relative deviation, and for a function that is at most 1 the absolute one.

@@ -151,9 +151,7 @@ struct Given<'a>(&'a dyn Fn(u32) -> f32);
 impl Tracer for Given<'_> {
     fn trace(&mut self, batch: &Batch) -> Result<Traced> {
         let group = |group: u32| {
-            let first = batch.samples.start + group * batch.group;
-            let end = batch.samples.end.min(first + batch.group);
-            let sum = (first..end).fold(0f32, |sum, sample| sum + (self.0)(sample));
+            let sum = batch.group_samples(group).fold(0f32, |sum, sample| sum + (self.0)(sample));
             PixelSum { radiance: [f64::from(sum); 3], ..PixelSum::default() }
         };
         Ok(Traced { sums: (0..batch.groups()).map(group).collect(), ..Traced::default() })
