@@ -369,3 +369,67 @@ fn help_and_version() {
     let output = folder.luminaire(&["--version"]).output().unwrap();
     assert!(String::from_utf8_lossy(&output.stdout).starts_with("luminaire "), "{output:?}");
 }
+
+/// A limit of the noise ends a render, says so, and the map of the errors is written.
+#[test]
+fn noise_ends_a_render() {
+    let folder = Folder::new();
+    let words = [
+        "render",
+        "good.obj",
+        "--backend",
+        "cpu",
+        "--width",
+        "16",
+        "--height",
+        "16",
+        "--noise",
+        "0.5",
+        "-o",
+        "a.exr",
+        "--error-map",
+        "e.png",
+        "--stats",
+        "s.json",
+    ];
+    let output = folder.luminaire(&words).output().unwrap();
+    assert!(output.status.success(), "{}", stderr(&output));
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert!(said.contains("ended by --noise") && said.contains("estimated error"), "{said}");
+    let stats: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(folder.path().join("s.json")).unwrap()).unwrap();
+    assert_eq!(stats["end"], "noise");
+    assert!(stats["error"]["relative"].as_f64().unwrap() <= 0.5, "{stats}");
+    let picture = luminaire::image_io::read(&folder.path().join("a.exr")).unwrap();
+    assert!(picture.error.is_some());
+    let map = image::open(folder.path().join("e.png")).unwrap();
+    assert!(map.width() >= 16 && map.height() > 16);
+}
+
+/// A sample is traced again instead of a render; nothing is written.
+#[test]
+fn a_sample_is_replayed() {
+    let folder = Folder::new();
+    let before = folder.names();
+    let words = ["render", "good.obj", "--backend", "cpu", "--width", "16", "--pixel", "8,5", "--sample", "3"];
+    let output = folder.luminaire(&words).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success() && said.contains("pixel 8,5, sample 3"), "{said}{}", stderr(&output));
+    assert!(said.contains("throughput") && said.contains("reference"), "{said}");
+    assert_eq!(folder.names(), before);
+}
+
+#[test]
+fn options_of_the_error_that_mean_nothing() {
+    let folder = Folder::new();
+    let fails = |words: &[&str], part: &str| {
+        folder.fails(&[&["render", "good.obj", "--backend", "cpu"], words].concat(), 2, &[part]);
+    };
+    fails(&["--error-map", "map.exr"], ".png");
+    fails(&["-o", "a.png", "--error-map", "a.png"], "the picture itself");
+    fails(&["--error-map", "good.png"], "the picture itself");
+    fails(&["--spp", "1", "--error-map", "e.png"], "--spp 2");
+    fails(&["--width", "16", "--pixel", "16,0", "--sample", "1"], "not on the film");
+    fails(&["--pixel", "1,1", "--sample", "1", "--spp", "4"], "cannot be used with");
+    fails(&["--pixel", "1,1"], "--sample");
+}
