@@ -8,7 +8,7 @@ use common::scenes::*;
 use luminaire::backend::Backend;
 use luminaire::measure::Workbench;
 use luminaire::measure::calibration::calibrate;
-use luminaire::scene::{Sampler, Scene};
+use luminaire::scene::Sampler;
 use std::io::Write;
 
 /// The ratio of the estimated to the true relMSE, as the mean over the seeds: what `docs/accuracy.md` promises. Over six seeds it varies by
@@ -28,10 +28,8 @@ fn the_estimated_error_is_the_true_one() {
             writeln!(std::io::stderr(), "SKIP: the error bar on Vulkan ({}); the reference is tested", bench.device);
         Backend::Cpu
     };
-    let scenes: [(&str, fn(u32, u32) -> Scene); 3] =
-        [("room", cornell_like), ("textures", textured_room), ("open air", open_air)];
-    for (name, scene) in scenes {
-        let mut scene = scene(32, 32);
+    let scenes = [("room", cornell_like(32, 32)), ("textures", textured_room(32, 32)), ("open air", open_air(32, 32))];
+    for (name, mut scene) in scenes {
         scene.settings.sampler = Sampler::Sobol;
         let found = calibrate(&|scene| bench.tracer(scene, backend), &scene, &[64, 256], 6, 8192).expect("it renders");
         for c in found {

@@ -82,11 +82,11 @@ pub fn calibrate(
             let film = picture(seed, spp)?;
             let errors = film.error_map().expect("several samples a pixel");
             let (mut square, mut relative, mut all_relative) = (0.0, 0.0, 0.0);
-            for pixel in 0..film.pixels() {
+            for (pixel, (estimated, own)) in std::iter::zip(&errors.standard_error, &truth_error).enumerate() {
                 let pairs = std::iter::zip(film.mean(pixel), truth.mean(pixel));
-                let variances = std::iter::zip(errors.standard_error[pixel], truth_error[pixel]);
+                let variances = std::iter::zip(estimated, own);
                 for ((found, expected), (estimated, own)) in pairs.zip(variances) {
-                    let [estimated, own] = [estimated, own].map(|error| f64::from(error).powi(2));
+                    let [estimated, own] = [estimated, own].map(|error| f64::from(*error).powi(2));
                     let off = (found - expected).powi(2);
                     let scale = expected.powi(2) + REL_MSE_FLOOR;
                     all_relative += (off - own) / scale;
