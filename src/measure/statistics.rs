@@ -63,13 +63,21 @@ pub struct Image {
 pub fn render(tracer: &mut dyn Tracer, width: u32, height: u32, samples: u32, groups: u32) -> Image {
     assert!(groups >= 2 && groups.is_multiple_of(PARTS) && samples.is_multiple_of(groups));
     let tile = Tile { x: 0, y: 0, width, height };
-    let traced = tracer.trace(&Batch { tile, samples: 0..samples, group: samples / groups }).expect("the tracer works");
+    let group = samples / groups;
+    // Shorter sums than that where it can be: an invocation of the kernel takes one of every part.
+    let pieces = if group.is_multiple_of(PARTS) { PARTS } else { 1 };
+    let batch = Batch { tile, samples: 0..samples, group: group / pieces };
+    let traced = tracer.trace(&batch).expect("the tracer works");
     assert_eq!(traced.dropped, []);
     let pixels = tile.pixels();
-    assert_eq!(traced.sums.len(), pixels * groups as usize);
+    assert_eq!(traced.sums.len(), pixels * (groups * pieces) as usize);
     let n = f64::from(groups);
     let value = |pixel: usize, group: usize, channel: usize| {
-        traced.sums[group * pixels + pixel].radiance[channel] * n / f64::from(samples)
+        // Pieces of a group follow each other with those of the other parts between them.
+        let (parts, pieces) = (PARTS as usize, pieces as usize);
+        let first = group / parts * parts * pieces + group % parts;
+        let sums = (0..pieces).map(|piece| traced.sums[(first + piece * parts) * pixels + pixel].radiance[channel]);
+        sums.sum::<f64>() * n / f64::from(samples)
     };
     let estimate =
         |pixel: usize, channel: usize| Estimate::new((0..groups as usize).map(|group| value(pixel, group, channel)));

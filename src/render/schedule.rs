@@ -9,8 +9,9 @@ pub(super) const FIRST_BUDGET: u64 = 64;
 /// The most samples of a pixel in one batch: a workgroup for each group of every part, and as many as every Vulkan device takes along an axis.
 const MAX_PASS: u64 = 65_535 * (LONGEST * PARTS) as u64;
 
-/// The most samples of one group: few enough to add them up in `f32`.
-const LONGEST: u32 = 16;
+/// The most samples of one group: few enough to add them up in `f32`, and that an invocation of the kernel, which takes a group of every part,
+/// stays short (Mesa before 23 ends a shader's loops after 65 535 rounds).
+const LONGEST: u32 = 4;
 
 /// How many samples the next batch may hold, after one of `samples` took `seconds`: less at once if that was too long, else at
 /// most four times as many. A small batch (the rest of a pass) that took little says nothing against the present budget.
@@ -23,7 +24,7 @@ pub(super) fn next_budget(budget: u64, samples: u64, seconds: f64, target: f64) 
     }
 }
 
-/// Samples in the groups that begin at sample `start`: powers of two up to 16, then 16.
+/// Samples in the groups that begin at sample `start`: powers of two up to 4, then 4.
 pub(super) fn group_length(start: u32) -> u32 {
     let in_part = (start / PARTS).clamp(1, LONGEST);
     1 << in_part.ilog2()
@@ -131,11 +132,11 @@ mod tests {
             .map(|b| b / PARTS)
             .take_while(|b| *b <= 64)
             .collect();
-        assert_eq!(bounds, [0, 1, 2, 4, 8, 16, 32, 48, 64]);
+        assert_eq!(bounds, [0, 1, 2, 4, 8, 12, 16, 20, 24, 28, 32, 36, 40, 44, 48, 52, 56, 60, 64]);
         assert!(
             (0..1000).all(|start| groups_end(start) > start && groups_end(groups_end(start) - 1) == groups_end(start))
         );
-        assert_eq!((groups_end(u32::MAX), group_length(u32::MAX)), (u32::MAX, 16));
+        assert_eq!((groups_end(u32::MAX), group_length(u32::MAX)), (u32::MAX, 4));
     }
 
     #[test]
@@ -144,7 +145,7 @@ mod tests {
         let passes: Vec<_> = std::iter::from_fn(|| schedule.next(4096 * 480, 1 << 30)).collect();
         assert!(passes.iter().all(|b| b.tile.pixels() == 4096));
         let ranges: Vec<_> = passes.iter().map(|b| b.samples.clone()).collect();
-        assert_eq!(ranges, [0..8, 8..16, 16..32, 32..64, 64..512, 512..960, 960..1000]);
+        assert_eq!(ranges, [0..8, 8..16, 16..496, 496..976, 976..1000]);
     }
 
     #[test]
@@ -152,7 +153,7 @@ mod tests {
         let mut schedule = Schedule::new((64, 64), 1000);
         schedule.aim(77);
         let passes: Vec<_> = std::iter::from_fn(|| schedule.next(1 << 40, 1 << 30)).map(|b| b.samples).collect();
-        assert_eq!(passes, [0..8, 8..16, 16..32, 32..64, 64..77, 77..128, 128..1000]);
+        assert_eq!(passes, [0..8, 8..16, 16..77, 77..80, 80..1000]);
     }
 
     #[test]

@@ -72,7 +72,7 @@ fn sweep(bench: &Workbench, numbers: &[u32], most_rendered: u32) -> Result<Sweep
             share(last(&random.series[0])),
         ),
         mends: format!(
-            "The kernel adds at most 16 samples in f32 and the film adds these sums in f64: at most {} off here, {} for random \
+            "The kernel adds at most 4 samples in f32 and the film adds these sums in f64: at most {} off here, {} for random \
              radiances, and {} \
              in a real picture of a constant sky, no matter how many they are. A compensated f32 sum would cost the kernel twice the \
              registers and \
