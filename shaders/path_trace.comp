@@ -60,6 +60,11 @@ void main() {
     uint pixels = batch.tile_width * batch.tile_height;
     uint slot = id.z * PARTS * pixels + id.y * batch.tile_width + id.x;
 
+    // A driver that ends a long loop (Mesa before 23 does, after 65 535 rounds) leaves these: groups of which all samples are lost.
+    for (uint p = 0u; p <= last_part; p++) {
+        sums[slot + p * pixels] = PixelSum(float[3](0.0, 0.0, 0.0), 0u, (count - p + PARTS - 1u) / PARTS);
+    }
+
     // One loop over the bounces of all samples: a lane whose path ends starts its next one while the others go on.
     uint part = 0u;
     uint offset = 0u;

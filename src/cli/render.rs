@@ -102,14 +102,15 @@ fn finish(
     outputs: &[PathBuf],
     say: &dyn Fn(&str),
 ) -> Result<ExitCode> {
-    if let Some(first) = rendered.dropped_samples.first() {
-        say(&format!(
-            "warning: samples that were not finite are left out ({}); with the same options, --pixel {},{} --sample {} replays one",
-            rendered.dropped,
-            first.pixel % scene.film.width,
-            first.pixel / scene.film.width,
-            first.sample
-        ));
+    if rendered.dropped > 0 {
+        let replay = rendered.dropped_samples.first().map_or(
+            "; the driver ended the kernel before its time: use another driver, or --backend cpu".into(),
+            |first| {
+                let (x, y) = (first.pixel % scene.film.width, first.pixel / scene.film.width);
+                format!("; with the same options, --pixel {x},{y} --sample {} replays one", first.sample)
+            },
+        );
+        say(&format!("warning: {} samples that were not finite, or lost, are left out{replay}", rendered.dropped));
     }
     let written = if rendered.progress.samples > 0 { outputs } else { &[] };
     let black = rendered.film.samples.iter().filter(|samples| **samples == 0).count();
