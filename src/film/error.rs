@@ -58,6 +58,11 @@ pub struct ErrorMap {
 }
 
 impl Film {
+    /// Variance of the mean of a pixel, by channel, from its own samples alone; none if fewer than two parts have any.
+    pub fn variance(&self, pixel: usize) -> Option<[f64; 3]> {
+        self.measured(pixel).map(|[r, g, b, _]| [r, g, b].map(|channel| channel.variance))
+    }
+
     /// The estimated error of the picture; none if no pixel has samples in two parts.
     pub fn error(&self) -> Option<ErrorEstimate> {
         Some(self.error_map()?.total)
