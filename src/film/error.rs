@@ -78,15 +78,12 @@ impl Film {
         }
         // A pixel without samples in two parts (because they were not finite, or the render has just begun) tells nothing, and is left out
         // like a firefly.
-        let unknown = |pixel: usize| [0, 1, 2].map(|c| Measured { mean: self.mean(pixel)[c], variance: 0.0 });
-        let own: Vec<[Measured; 4]> = (told.iter().enumerate())
-            .map(|(pixel, told)| {
-                told.unwrap_or_else(|| {
-                    let [r, g, b] = unknown(pixel);
-                    [r, g, b, g]
-                })
-            })
-            .collect();
+        let unknown = |pixel: usize| {
+            let [r, g, b] = self.mean(pixel);
+            [r, g, b, (r + g + b) / 3.0].map(|mean| Measured { mean, variance: 0.0 })
+        };
+        let own: Vec<[Measured; 4]> =
+            told.iter().enumerate().map(|(pixel, told)| told.unwrap_or_else(|| unknown(pixel))).collect();
         let map = |f: &(dyn Fn(usize) -> [f64; 4] + Sync)| -> Vec<[f64; 4]> {
             (0..own.len()).into_par_iter().map(f).collect()
         };
