@@ -58,7 +58,7 @@ fn main() {
                 let start = Instant::now();
                 let traced = o.tracer.trace(&batch(0..16)).expect("the tracer works");
                 let seconds = start.elapsed().as_secs_f64();
-                let rays: u64 = traced.sums.iter().map(|s| u64::from(s.rays)).sum();
+                let rays: u64 = traced.sums.iter().map(|s| u64::from(s.rays.all)).sum();
                 samples_a_ray = 16.0 * tile.pixels() as f64 / rays as f64;
                 // The first round compiles the shaders.
                 if round > 0 {

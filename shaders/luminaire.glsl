@@ -59,8 +59,8 @@ float emission_weight(float pdf, float density) {
 }
 
 // Light from one luminaire that `s` sends towards `wo`; `throughput` is the path's so far, without eta^2, and `rest` the probability that
-// it takes no impulse there. Adds the shadow ray to `rays`.
-vec3 direct_light(Surfel s, Material material, vec3 wo, vec3 throughput, uvec4 random, float rest, uint salt, inout uint rays) {
+// it takes no impulse there. Adds the shadow ray to `rays` (all, shadow).
+vec3 direct_light(Surfel s, Material material, vec3 wo, vec3 throughput, uvec4 random, float rest, uint salt, inout uvec2 rays) {
     if (frame.luminaire_count == 0u) return vec3(0.0);
     Luminaire light = luminaires[choose_luminaire(random.z)];
     // With one kind of luminaire in the scene these are constants.
@@ -149,6 +149,6 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, vec3 throughput, uvec4 r
         }
         direction = target - origin;
     }
-    rays++;
+    rays += uvec2(1u);
     return occluded(origin, direction, t_max, salt) ? vec3(0.0) : radiance;
 }

@@ -26,9 +26,9 @@ bool is_finite(vec3 v) {
 
 // Traces the path's ray and whatever happens at the surface it meets: once through the loop of `radiance` in the reference.
 // Returns false when the path has ended. Its radiance is not finite if its numbers were not.
-bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uint rays) {
+bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uvec2 rays) {
     Hit hit;
-    rays++;
+    rays.x++;
     uint salt = HOLES ? ray_salt(pixel_index, sample_index, 2u * path.bounce, frame.seed) : 0u;
     if (!closest_hit(path.origin, path.direction, INFINITY, salt, hit)) {
         // Without an environment escaping light disappears.

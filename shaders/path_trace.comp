@@ -34,6 +34,7 @@ layout(push_constant, std430) uniform Batch {
 struct PixelSum {
     float radiance[3];
     uint rays;
+    uint shadow_rays;
     uint dropped;
 };
 layout(set = 0, binding = 7, std430) writeonly buffer Sums { PixelSum sums[]; };
@@ -62,7 +63,7 @@ void main() {
 
     // A driver that ends a long loop (Mesa before 23 does, after 65 535 rounds) leaves these: groups of which all samples are lost.
     for (uint p = 0u; p <= last_part; p++) {
-        sums[slot + p * pixels] = PixelSum(float[3](0.0, 0.0, 0.0), 0u, (count - p + PARTS - 1u) / PARTS);
+        sums[slot + p * pixels] = PixelSum(float[3](0.0, 0.0, 0.0), 0u, 0u, (count - p + PARTS - 1u) / PARTS);
     }
 
     // One loop over the bounces of all samples: a lane whose path ends starts its next one while the others go on.
@@ -70,7 +71,7 @@ void main() {
     uint offset = 0u;
     uint sample_index = first;
     vec3 sum = vec3(0.0);
-    uint rays = 0u;
+    uvec2 rays = uvec2(0u);     // all, shadow
     uint not_finite = 0u;
     Path path = camera_path(pixel, pixel_index, sample_index);
     while (true) {
@@ -85,11 +86,11 @@ void main() {
             }
             offset += PARTS;
             if (offset >= count) {
-                sums[slot + part * pixels] = PixelSum(float[3](sum.x, sum.y, sum.z), rays, not_finite);
+                sums[slot + part * pixels] = PixelSum(float[3](sum.x, sum.y, sum.z), rays.x, rays.y, not_finite);
                 if (part == last_part) break;
                 offset = ++part;
                 sum = vec3(0.0);
-                rays = 0u;
+                rays = uvec2(0u);
                 not_finite = 0u;
             }
             sample_index = first + offset;

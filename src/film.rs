@@ -61,13 +61,29 @@ impl Batch {
     }
 }
 
+/// Rays, counted.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Rays {
+    /// Of all kinds: one from the camera for each sample, those that a path goes on with, and shadow rays.
+    pub all: u32,
+    /// Shadow rays among them.
+    pub shadow: u32,
+}
+
+impl std::ops::AddAssign for Rays {
+    fn add_assign(&mut self, more: Rays) {
+        self.all += more.all;
+        self.shadow += more.shadow;
+    }
+}
+
 /// The sum over one group of samples of one pixel.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct PixelSum {
     /// Radiance of the samples that are finite, added up in linear RGB.
     pub radiance: [f64; 3],
-    /// Rays that were traced for it, of all kinds.
-    pub rays: u32,
+    /// Rays that were traced for it.
+    pub rays: Rays,
     /// Samples that were not finite and are left out.
     pub dropped: u32,
 }
@@ -236,7 +252,7 @@ mod tests {
     use super::*;
 
     fn grey(v: f64) -> PixelSum {
-        PixelSum { radiance: [v; 3], rays: 1, dropped: 0 }
+        PixelSum { radiance: [v; 3], rays: Rays { all: 1, shadow: 0 }, dropped: 0 }
     }
 
     #[test]

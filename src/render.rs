@@ -68,6 +68,8 @@ pub struct Progress {
     pub pixels: u64,
     /// Rays so far, of all kinds.
     pub rays: u64,
+    /// Shadow rays among them; one of the others for each sample comes from the camera.
+    pub shadow_rays: u64,
     /// Wall-clock seconds so far.
     pub seconds: f64,
     /// The limits.
@@ -197,7 +199,8 @@ pub fn render(
         rendered.dropped_samples.extend(traced.dropped.iter().take(room));
         rendered.device_seconds += traced.device_seconds.unwrap_or(0.0);
         rendered.progress.samples += samples;
-        rendered.progress.rays += traced.sums.iter().map(|s| u64::from(s.rays)).sum::<u64>();
+        rendered.progress.rays += traced.sums.iter().map(|s| u64::from(s.rays.all)).sum::<u64>();
+        rendered.progress.shadow_rays += traced.sums.iter().map(|s| u64::from(s.rays.shadow)).sum::<u64>();
         rendered.progress.seconds = start.elapsed().as_secs_f64();
         let pass_done = schedule.pass_done();
         let at_aim = limits.noise.is_some() && pass_done == Some(aim);
@@ -239,6 +242,7 @@ fn samples_to_reach(samples: u32, relative: f64, limit: f64) -> u32 {
 mod tests {
     use super::schedule::group_length;
     use super::*;
+    use crate::film::Rays;
     use crate::sampling::{random4, uniform};
 
     /// Radiance of random numbers that differ widely in size, so that any other order of addition shows.
@@ -276,7 +280,7 @@ mod tests {
                             for (s, v) in sum.radiance.iter_mut().zip([r, g, b]) {
                                 *s += uniform(v) * scale;
                             }
-                            sum.rays += 2;
+                            sum.rays += Rays { all: 2, shadow: 1 };
                         }
                         sums.push(sum);
                     }
@@ -313,6 +317,7 @@ mod tests {
             assert!(matches!(rendered.end, End::Samples));
             assert!(rendered.film.samples.iter().all(|s| *s == 71));
             assert_eq!(rendered.progress.rays, 37 * 23 * 71 * 2);
+            assert_eq!(rendered.progress.shadow_rays, 37 * 23 * 71);
             films.push(rendered.film);
         }
         assert!(films.iter().all(|film| *film == films[0]));
@@ -421,7 +426,8 @@ mod tests {
     #[test]
     fn progress_by_the_nearer_limit() {
         let limits = Limits { spp: Some(10), seconds: Some(100.0), noise: None };
-        let progress = Progress { samples: 500, pixels: 100, rays: 4_000_000, seconds: 2.0, limits, error: None };
+        let progress =
+            Progress { samples: 500, pixels: 100, rays: 4_000_000, seconds: 2.0, limits, ..Progress::default() };
         assert_eq!(progress.fraction(), 0.5);
         assert_eq!(progress.seconds_left(), Some(2.0));
         assert_eq!(progress.mrays_per_second(), 2.0);

@@ -235,6 +235,9 @@ fn a_render_writes_what_it_says() {
     assert_eq!((&stats["samples"], &stats["seed"], &stats["backend"]), (&960.into(), &7.into(), &"cpu".into()));
     assert_eq!((&stats["end"], &stats["spp_least"]), (&"samples".into(), &5.into()));
     assert!(stats["rays"].as_u64().unwrap() >= 960, "{stats}");
+    let by_kind = ["camera_rays", "bounce_rays", "shadow_rays"].map(|kind| stats[kind].as_u64().unwrap());
+    assert_eq!(stats["rays"].as_u64().unwrap(), by_kind.iter().sum::<u64>());
+    assert!(by_kind.iter().all(|n| *n > 0), "{stats}");
 
     let again = folder.luminaire(&words).arg("--quiet").output().unwrap();
     assert_eq!(again.status.code(), Some(0));

@@ -2,11 +2,10 @@
 //!
 //! Without a Vulkan device only the reference is measured, and that is said; with `LUMINAIRE_REQUIRE_GPU=1` it fails.
 
-use luminaire::backend::Backend;
+mod common;
+
 use luminaire::gpu::validation_messages;
-use luminaire::measure::Workbench;
 use luminaire::measure::closed_forms::{Table, cases};
-use std::io::Write;
 
 /// Two-sided, for all cases and backends together: a right program would fail once in ten thousand choices of the seed.
 const SIGNIFICANCE: f64 = 1e-4;
@@ -17,15 +16,7 @@ const SAMPLES: u32 = 64;
 
 #[test]
 fn every_backend_agrees_with_every_closed_form() {
-    let bench = Workbench::new(false).expect("a device that is there opens");
-    let backends = bench.backends();
-    for backend in [Backend::ComputeBvh, Backend::RayQuery] {
-        if !backends.contains(&backend) {
-            let required = std::env::var_os("LUMINAIRE_REQUIRE_GPU").is_some_and(|v| v == "1");
-            assert!(!required, "LUMINAIRE_REQUIRE_GPU=1, but {backend} cannot run: {}", bench.device);
-            let _ = writeln!(std::io::stderr(), "SKIP: closed forms on {backend}: {}", bench.device);
-        }
-    }
+    let bench = common::bench();
     let table = Table::measure(&bench, cases(), SAMPLES, |_| ()).expect("the backends work");
     let verdict = table.verdict();
     println!("{}\n{}\n{verdict:#?}", table.markdown(), table.markdown_without_chance());

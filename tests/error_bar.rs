@@ -6,10 +6,8 @@ mod common;
 
 use common::scenes::*;
 use luminaire::backend::Backend;
-use luminaire::measure::Workbench;
 use luminaire::measure::calibration::calibrate;
 use luminaire::scene::Sampler;
-use std::io::Write;
 
 /// The ratio of the estimated to the true relMSE, as the mean over the seeds: what `docs/accuracy.md` promises. Over six seeds it varies by
 /// 2 to 4 % (printed), so that a right program would leave these bounds with a probability below 1e-4 a scene.
@@ -19,15 +17,8 @@ const COVERED: std::ops::RangeInclusive<f64> = 0.92..=0.98;
 
 #[test]
 fn the_estimated_error_is_the_true_one() {
-    let bench = Workbench::new(false).expect("a device that is there opens");
-    let backend = if bench.backends().contains(&Backend::ComputeBvh) {
-        Backend::ComputeBvh
-    } else {
-        assert!(std::env::var_os("LUMINAIRE_REQUIRE_GPU").is_none_or(|v| v != "1"), "{}", bench.device);
-        let _ =
-            writeln!(std::io::stderr(), "SKIP: the error bar on Vulkan ({}); the reference is tested", bench.device);
-        Backend::Cpu
-    };
+    let bench = common::bench();
+    let backend = if bench.backends().contains(&Backend::ComputeBvh) { Backend::ComputeBvh } else { Backend::Cpu };
     let scenes = [("room", cornell_like(32, 32)), ("textures", textured_room(32, 32)), ("open air", open_air(32, 32))];
     for (name, mut scene) in scenes {
         scene.settings.sampler = Sampler::Sobol;

@@ -3,30 +3,20 @@
 //!
 //! Without a Vulkan device only the reference and the models are held to theirs, and SKIP is said; `LUMINAIRE_REQUIRE_GPU=1` makes that a failure.
 
+mod common;
+
+use common::bench;
 use glam::{Affine3A, Vec3};
-use luminaire::backend::Backend;
-use luminaire::measure::Workbench;
 use luminaire::measure::chart::Chart;
 use luminaire::measure::intersect_f32::{Test, Triangles};
 use luminaire::measure::rays::{Random, Ray, reference_hits};
 use luminaire::measure::stability::{distance, edges, eta, gaps, glass, instances, scale, slivers};
 use luminaire::reference::Reference;
 use luminaire::scene::build::{add, empty, icosphere, matte};
-use std::io::Write;
 
 const REFERENCE: &str = "f64 reference";
 const COMPUTE_BVH: &str = "compute BVH";
 const RAY_QUERY: &str = "ray query";
-
-fn bench() -> Workbench {
-    let bench = Workbench::new(false).expect("the device opens");
-    if bench.backends() == [Backend::Cpu] {
-        let required = std::env::var_os("LUMINAIRE_REQUIRE_GPU").is_some_and(|v| v == "1");
-        assert!(!required, "LUMINAIRE_REQUIRE_GPU=1, but {}", bench.device);
-        let _ = writeln!(std::io::stderr(), "SKIP: only the reference was tested: {}", bench.device);
-    }
-    bench
-}
 
 fn chart<'a>(charts: &'a [Chart], name: &str) -> &'a Chart {
     charts.iter().find(|chart| chart.name == name).unwrap_or_else(|| panic!("no chart {name}"))

@@ -1,12 +1,10 @@
 //! The sweeps over light, a few points each: what luminaire promises there.
 
-#[path = "common/statistics.rs"]
-#[allow(dead_code)]
-mod statistics;
+mod common;
 
+use common::bench;
+use common::statistics::{Claims, Estimate, assert_plausible, two_sided};
 use glam::{Affine3A, DVec3, Vec3};
-use luminaire::backend::Backend;
-use luminaire::measure::Workbench;
 use luminaire::measure::chart::{Chart, Series};
 use luminaire::measure::stability::near_lamps::{Case, Steps};
 use luminaire::measure::stability::{Sweep, caustics, glossy, near_lamps as lamps};
@@ -15,23 +13,7 @@ use luminaire::reference::warp::uniform_hemisphere;
 use luminaire::sampling::{random4, uniform};
 use luminaire::scene::build::{add, empty, lamp, matte, quad};
 use luminaire::scene::{LuminaireTable, SampledLuminaire};
-use statistics::{Claims, Estimate, assert_plausible, two_sided};
 use std::f64::consts::TAU;
-use std::io::Write;
-
-/// Every backend; says past the capture of the test harness which are not here, and fails where everything must be tested.
-fn bench() -> Workbench {
-    let bench = Workbench::new(false).expect("what is there opens");
-    let backends = bench.backends();
-    for gpu in [Backend::ComputeBvh, Backend::RayQuery] {
-        if !backends.contains(&gpu) {
-            let required = std::env::var_os("LUMINAIRE_REQUIRE_GPU").is_some_and(|v| v == "1");
-            assert!(!required, "LUMINAIRE_REQUIRE_GPU=1, but {gpu} cannot run: {}", bench.device);
-            let _ = writeln!(std::io::stderr(), "SKIP: {gpu} was not tested: {}", bench.device);
-        }
-    }
-    bench
-}
 
 fn chart<'a>(sweep: &'a Sweep, name: &str) -> &'a Chart {
     sweep.charts.iter().find(|chart| chart.name == name).expect("a chart of that name")

@@ -33,7 +33,7 @@ fn picture(tracer: &mut dyn Tracer, samples: std::ops::Range<u32>) -> luminaire:
         for (i, sum) in traced.sums.iter().enumerate() {
             let pixel = &mut sums[i % tile.pixels()];
             (0..3).for_each(|c| pixel[c] += sum.radiance[c]);
-            rays += u64::from(sum.rays);
+            rays += u64::from(sum.rays.all);
         }
     }
     let seconds = start.elapsed().as_secs_f64();

@@ -98,7 +98,8 @@ mod tests {
     fn words() {
         assert_eq!([0.42, 42.4, 185.0, 7800.0].map(duration), ["0.42 s", "42 s", "3 min 5 s", "2 h 10 min"]);
         let limits = Limits { spp: Some(64), seconds: None, noise: None };
-        let progress = Progress { samples: 1600, pixels: 100, rays: 6_000_000, seconds: 2.0, limits, error: None };
+        let progress =
+            Progress { samples: 1600, pixels: 100, rays: 6_000_000, seconds: 2.0, limits, ..Progress::default() };
         assert_eq!(describe(&progress), "16.0 of 64 samples a pixel, 3.00 Mrays/s, 6.00 s left");
         let error = Some(ErrorEstimate { rmse: 0.1, rel_mse: 0.0625, fireflies: 0 });
         let limits = Limits { noise: Some(0.125), ..limits };

@@ -172,8 +172,10 @@ shared! {
     PixelSum {
         /// Radiance, added up over the finite samples.
         radiance: [f32; 3],
-        /// Rays traced.
+        /// Rays traced, of all kinds.
         rays: u32,
+        /// Shadow rays among them.
+        shadow_rays: u32,
         /// Samples that were not finite.
         dropped: u32,
     }

@@ -6,7 +6,7 @@ use super::scene::GpuScene;
 use super::shader::Shader;
 use super::{Buffer, Device, Kernel, layout};
 use crate::Result;
-use crate::film::{Batch, PixelSum, SampleId};
+use crate::film::{Batch, PixelSum, Rays, SampleId};
 use crate::render::{Traced, Tracer};
 use crate::sampling::PARTS;
 use crate::scene::Scene;
@@ -14,7 +14,7 @@ use ash::vk;
 use gpu_allocator::MemoryLocation;
 use std::sync::Arc;
 
-/// The most sums of one batch: 20 MiB of results.
+/// The most sums of one batch: 24 MiB of results.
 const MAX_SUMS: usize = 1 << 20;
 /// Workgroups are 8 x 8 pixels (`shaders/path_trace.comp`).
 const WORKGROUP: u32 = 8;
@@ -109,7 +109,11 @@ impl Tracer for GpuTracer {
         let (sums, dropped) = bytes.split_at(size as usize);
         let sums = bytemuck::cast_slice::<u8, layout::PixelSum>(sums)
             .iter()
-            .map(|s| PixelSum { radiance: s.radiance.map(f64::from), rays: s.rays, dropped: s.dropped })
+            .map(|s| PixelSum {
+                radiance: s.radiance.map(f64::from),
+                rays: Rays { all: s.rays, shadow: s.shadow_rays },
+                dropped: s.dropped,
+            })
             .collect();
         let dropped: &layout::Dropped = bytemuck::from_bytes(dropped);
         let named = dropped.samples.iter().take(dropped.count as usize);

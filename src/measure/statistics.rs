@@ -86,7 +86,7 @@ pub fn render(tracer: &mut dyn Tracer, width: u32, height: u32, samples: u32, gr
         groups,
         mean: all.iter().map(|e| e.map(|e| e.mean)).collect(),
         variance: all.iter().map(|e| e.map(|e| e.error * e.error)).collect(),
-        rays: traced.sums.iter().map(|s| u64::from(s.rays)).sum(),
+        rays: traced.sums.iter().map(|s| u64::from(s.rays.all)).sum(),
     }
 }
 

@@ -5,6 +5,7 @@ use super::scatter::path_pdf;
 use super::surfel::{Surfel, interpolate, offset_ray_origin, position_error};
 use super::texture::texture_coordinates;
 use super::warp::{solid_angle, spherical_triangle, uniform_triangle};
+use crate::film::Rays;
 use crate::sampling::uniform;
 use crate::scene::{AreaSampling, EmissiveTriangle, LightSampling, Luminaire, SampledLuminaire};
 use glam::DVec3;
@@ -45,7 +46,7 @@ impl Reference {
         throughput: DVec3,
         random: [u32; 4],
         salt: u32,
-        rays: &mut u32,
+        rays: &mut Rays,
     ) -> DVec3 {
         if !surfel.scatters() {
             return DVec3::ZERO;
@@ -63,7 +64,7 @@ impl Reference {
         if radiance == DVec3::ZERO {
             return DVec3::ZERO;
         }
-        *rays += 1;
+        *rays += Rays { all: 1, shadow: 1 };
         if self.occluded(light.origin, light.direction, light.t_max, salt) {
             return DVec3::ZERO;
         }

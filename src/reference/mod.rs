@@ -26,7 +26,7 @@ mod tree;
 pub mod warp;
 
 use crate::Result;
-use crate::film::{Batch, MOST_RADIANCE, PixelSum, SampleId};
+use crate::film::{Batch, MOST_RADIANCE, PixelSum, Rays, SampleId};
 use crate::render::{Traced, Tracer};
 use crate::scene::{LuminaireTable, Scene, widen};
 use glam::{DAffine3, DMat3, DVec3};
@@ -103,7 +103,7 @@ impl Tracer for Reference {
             .map(|index| {
                 let (group, in_tile) = ((index / pixels) as u32, (index % pixels) as u32);
                 let pixel = (tile.y + in_tile / tile.width) * this.scene.film.width + tile.x + in_tile % tile.width;
-                let (mut sum, mut rays, mut dropped) = (DVec3::ZERO, 0, vec![]);
+                let (mut sum, mut rays, mut dropped) = (DVec3::ZERO, Rays::default(), vec![]);
                 for sample in batch.group_samples(group) {
                     let (radiance, traced) = this.radiance(pixel, sample);
                     rays += traced;

@@ -4,6 +4,7 @@ use super::Reference;
 use super::intersect::Hit;
 use super::luminaire::emission_weight;
 use super::scatter::{MAX_SURVIVAL, scatter, survival};
+use crate::film::Rays;
 use crate::sampling::{light_block, ray_salt, scatter_block, uniform};
 use crate::scene::{Extinction, Integrator, LightSampling};
 use glam::DVec3;
@@ -26,7 +27,7 @@ pub struct Vertex {
 impl Reference {
     /// Radiance of one sample of a pixel (`y * width + x`), and the number of rays that were traced for it. It is not finite if the
     /// path's numbers were not.
-    pub fn radiance(&self, pixel: u32, sample: u32) -> (DVec3, u32) {
+    pub fn radiance(&self, pixel: u32, sample: u32) -> (DVec3, Rays) {
         self.follow(pixel, sample, &mut |_| {})
     }
 
@@ -37,7 +38,7 @@ impl Reference {
         (radiance, vertices)
     }
 
-    fn follow(&self, pixel: u32, sample: u32, met: &mut impl FnMut(Vertex)) -> (DVec3, u32) {
+    fn follow(&self, pixel: u32, sample: u32, met: &mut impl FnMut(Vertex)) -> (DVec3, Rays) {
         let settings = &self.scene.settings;
         let numbers = |block: u32| settings.sampler.numbers(pixel, sample, block, settings.seed);
         let salt = |ray: u32| ray_salt(pixel, sample, ray, settings.seed);
@@ -54,9 +55,9 @@ impl Reference {
         // Where the ray comes from, and the density with which the path went there; none for the camera and impulses.
         let mut from = DVec3::ZERO;
         let mut pdf = None;
-        let mut rays = 0;
+        let mut rays = Rays::default();
         for bounce in 0.. {
-            rays += 1;
+            rays.all += 1;
             let Some(hit) = self.closest_hit(origin, direction, f64::INFINITY, salt(2 * bounce)) else {
                 let weight = emission_weight(estimator.light_sampling, pdf, self.environment_pdf(direction));
                 radiance += throughput * weight * self.environment_radiance(direction);

@@ -20,9 +20,9 @@ mod scenes;
 mod sensor;
 mod twins;
 
+use common::skip;
 use luminaire::gpu::{Device, GpuTracer, Instance, validation_messages};
 use luminaire::scene::Scene;
-use std::io::Write;
 use std::sync::Arc;
 
 /// Set in the process that runs these tests on a driver without ray query.
@@ -43,12 +43,6 @@ impl Intersector {
     fn tracer(&self, scene: &Scene) -> GpuTracer {
         GpuTracer::new(&self.device, scene, self.ray_query).expect("the scene fits the device")
     }
-}
-
-/// Says that something was not tested, past the capture of the test harness; fails where everything must be tested.
-fn skip(what: &str) {
-    assert!(std::env::var_os("LUMINAIRE_REQUIRE_GPU").is_none_or(|v| v != "1"), "LUMINAIRE_REQUIRE_GPU=1, but {what}");
-    let _ = writeln!(std::io::stderr(), "SKIP: {what}");
 }
 
 /// The intersectors that can run here; none without a device.

@@ -3,6 +3,7 @@
 use crate::common::scenes::*;
 use crate::common::statistics::*;
 use glam::{Affine3A, DVec3, Mat3, Vec3};
+use luminaire::film::Rays;
 use luminaire::reference::Reference;
 use luminaire::reference::surfel::Surfel;
 use luminaire::sampling::{random4, uniform};
@@ -30,8 +31,8 @@ fn surfel_at(tracer: &Reference, x: f64, z: f64) -> Surfel {
 fn irradiance(tracer: &Reference, x: f64, z: f64, samples: u32) -> Estimate {
     let surfel = surfel_at(tracer, x, z);
     Estimate::new((0..samples).map(|i| {
-        let mut rays = 0;
-        tracer.direct_light(&surfel, DVec3::Y, DVec3::ONE, random4(0, i, 1, 42), 0, &mut rays).x * PI / ALBEDO
+        tracer.direct_light(&surfel, DVec3::Y, DVec3::ONE, random4(0, i, 1, 42), 0, &mut Rays::default()).x * PI
+            / ALBEDO
     }))
 }
 
@@ -152,7 +153,8 @@ fn blockers_between_shadow_and_blockers_behind_do_not() {
                 tracer.surfel(&hit, DVec3::Y)
             };
             let found = Estimate::new((0..1000).map(|i| {
-                tracer.direct_light(&surfel, DVec3::Y, DVec3::ONE, random4(0, i, 1, 42), 0, &mut 0).x * PI / ALBEDO
+                tracer.direct_light(&surfel, DVec3::Y, DVec3::ONE, random4(0, i, 1, 42), 0, &mut Rays::default()).x * PI
+                    / ALBEDO
             }));
             assert!((found.mean - expected).abs() <= 1e-12, "slab at {y}: {} instead of {expected}", found.mean);
         }
@@ -183,7 +185,8 @@ fn short_shadow_rays_far_from_the_origin() {
         let hit = tracer.closest_hit(from, down, f64::INFINITY, 0).expect("the floor");
         assert_eq!(hit.object, 0);
         let surfel = tracer.surfel(&hit, -down.normalize());
-        let light = tracer.direct_light(&surfel, -down.normalize(), DVec3::ONE, random4(0, i, 3, 5), 0, &mut 0);
+        let light =
+            tracer.direct_light(&surfel, -down.normalize(), DVec3::ONE, random4(0, i, 3, 5), 0, &mut Rays::default());
         assert!(light.x > 0.0, "the lamp or the floor shadows itself at ({x}, {z})");
     }
 }
@@ -195,9 +198,9 @@ fn shadow_rays_are_cast_for_light_only() {
     scene.luminaires.push(point(Vec3::Y, 1.0));
     let count = |scene: &Scene| {
         let tracer = Reference::new(scene);
-        let mut rays = 0;
+        let mut rays = Rays::default();
         tracer.direct_light(&surfel_at(&tracer, 0.0, 0.0), DVec3::Y, DVec3::ONE, [0; 4], 0, &mut rays);
-        rays
+        rays.all
     };
     assert_eq!(count(&scene), 1);
     scene.luminaires[0] = point(-Vec3::Y, 1.0);

@@ -5,6 +5,7 @@ use crate::common::statistics::*;
 use crate::transport::{means, preset};
 use glam::{Affine3A, DVec2, DVec3, DVec4, Vec2, Vec3};
 use half::f16;
+use luminaire::film::Rays;
 use luminaire::reference::Reference;
 use luminaire::reference::texture::bilinear;
 use luminaire::sampling::{random4, ray_salt};
@@ -147,7 +148,16 @@ fn light_falls_through_holes() {
         let floor = open.closest_hit(DVec3::new(x, 0.5, 0.5), -DVec3::Y, f64::INFINITY, 0).expect("the floor");
         let surfel = open.surfel(&floor, DVec3::Y);
         let light = |tracer: &Reference, i: u32| {
-            tracer.direct_light(&surfel, DVec3::Y, DVec3::ONE, random4(0, i, 1, 3), ray_salt(0, i, 1, 3), &mut 0).x
+            tracer
+                .direct_light(
+                    &surfel,
+                    DVec3::Y,
+                    DVec3::ONE,
+                    random4(0, i, 1, 3),
+                    ray_salt(0, i, 1, 3),
+                    &mut Rays::default(),
+                )
+                .x
         };
         // The shadow ray passes the sheet half way, at u = 0.5 + x / 16; between the texels' centres, at a quarter and three quarters, the
         // opacity falls from 0.75 to 0.

@@ -3,7 +3,7 @@
 use crate::common::scenes::*;
 use crate::common::statistics::*;
 use glam::{Affine3A, DVec3, Vec3};
-use luminaire::film::{Batch, PixelSum, Tile};
+use luminaire::film::{Batch, PixelSum, Rays, Tile};
 use luminaire::reference::Reference;
 use luminaire::reference::warp::{cosine_hemisphere, uniform_triangle};
 use luminaire::render::Tracer;
@@ -149,7 +149,7 @@ fn simple_integrator_adds_the_ambient_term() {
     let tracer = Reference::new(&scene);
     // The panel does not light itself, but is chosen now and then in place of the luminaire at infinity.
     let all: Vec<_> = (0..20_000).map(|sample| tracer.radiance(5, sample)).collect();
-    assert!(all.iter().all(|(_, rays)| *rays == 1 || *rays == 2));
+    assert!(all.iter().all(|(_, rays)| rays.all == 1 || rays.all == 2));
     for (channel, ambient) in [0.1f32, 0.2, 0.3].into_iter().enumerate() {
         let mean = Estimate::new(all.iter().map(|(radiance, _)| radiance[channel]));
         let direct = 0.5 * f64::from(std::f32::consts::PI) / std::f64::consts::PI;
@@ -181,9 +181,13 @@ fn surfaces_do_not_shadow_or_hit_themselves() {
                 let (origin, direction) = tracer.sensor_ray(i % 1024, i / 1024);
                 let hit = tracer.closest_hit(origin, direction, f64::INFINITY, 0).expect("a closed shell");
                 let surfel = tracer.surfel(&hit, -direction);
-                let mut rays = 0;
+                let mut rays = Rays::default();
                 let light = tracer.direct_light(&surfel, -direction, DVec3::ONE, [0; 4], 0, &mut rays);
-                assert!(light.x > 0.0 && rays == 1, "the shell shadows itself at {}", surfel.position);
+                assert!(
+                    light.x > 0.0 && rays == Rays { all: 1, shadow: 1 },
+                    "the shell shadows itself at {}",
+                    surfel.position
+                );
                 // Along the normal, slanted, and grazing down to a millionth.
                 let (tangent, _) = luminaire::reference::warp::frame(surfel.geometric_normal);
                 for rise in [1.0, 0.1, 1e-3, 1e-6] {
@@ -280,7 +284,7 @@ fn non_finite_samples_are_counted() {
     let tile = Tile { x: 0, y: 0, width: 16, height: 16 };
     let traced = Reference::new(&scene).trace(&Batch { tile, samples: 0..3, group: 3 }).expect("traced");
     assert_eq!(traced.dropped.len(), 3 * 256);
-    assert!(traced.sums.iter().all(|s| s.radiance == [0.0; 3] && s.rays > 0 && s.dropped == 1));
+    assert!(traced.sums.iter().all(|s| s.radiance == [0.0; 3] && s.rays.all > 0 && s.dropped == 1));
 }
 
 /// Pictures with different seeds agree within their own uncertainty, and one with a slightly different wall does not.

@@ -51,7 +51,7 @@ pub(super) fn around_glass(
     let traced = bench.tracer(scene, backend)?.trace(&Batch { tile, samples: 0..samples, group: 1 })?;
     let Estimate { mean, error } = Estimate::new(traced.sums.iter().map(|sum| sum.radiance[0]));
     let ended = traced.sums.iter().filter(|sum| sum.radiance[0] > 0.0).count() as f64 / traced.sums.len() as f64;
-    Ok(AroundGlass { mean, error, ended, longest: traced.sums.iter().map(|sum| sum.rays).max().unwrap_or(0) })
+    Ok(AroundGlass { mean, error, ended, longest: traced.sums.iter().map(|sum| sum.rays.all).max().unwrap_or(0) })
 }
 
 fn run(bench: &Workbench) -> Result<Sweep> {

@@ -54,7 +54,7 @@ impl Trial {
             let traced = tracer.trace(&batch)?;
             let mean = |sum: &PixelSum| sum.radiance.iter().sum::<f64>() / 3.0 / f64::from(group);
             trial.groups.extend(traced.sums.iter().map(mean));
-            trial.rays += traced.sums.iter().map(|s| u64::from(s.rays)).sum::<u64>();
+            trial.rays += traced.sums.iter().map(|s| u64::from(s.rays.all)).sum::<u64>();
         }
         trial.seconds = start.elapsed().as_secs_f64();
         Ok(trial)
