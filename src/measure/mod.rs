@@ -1,6 +1,7 @@
 //! Measuring: statistics of pictures, whether the error bar is right, how far two pictures are apart, charts, and the sweeps that show
 //! where methods fail.
 
+pub mod bench;
 pub mod calibration;
 pub mod chart;
 pub mod closed_forms;
