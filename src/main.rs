@@ -13,6 +13,7 @@ fn main() -> ExitCode {
         cli::Command::Devices => cli::devices::run(),
         cli::Command::Inspect(options) => cli::inspect::run(&options.scene),
         cli::Command::Stability(options) => cli::stability::run(options),
+        cli::Command::Bench(options) => cli::bench::run(options),
     };
     let code = done.unwrap_or_else(|error| {
         cli::tell(&format!("error: {error}"));

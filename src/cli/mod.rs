@@ -1,5 +1,6 @@
 //! Arguments and the manner of speaking: results on stdout, everything else on stderr.
 
+pub mod bench;
 pub mod compare;
 pub mod devices;
 mod estimator;
@@ -15,6 +16,7 @@ mod watch;
 
 use luminaire::Error;
 use luminaire::backend::Backend;
+use luminaire::measure::bench::check_estimator;
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -34,6 +36,7 @@ Examples:
   luminaire inspect model.obj
   luminaire devices
   luminaire stability --list
+  luminaire bench --quick
 
 ";
 
@@ -72,6 +75,27 @@ Examples:
 
 Without a Vulkan device the reference runs alone. Exit code 1 if a sweep failed; the others are written nevertheless.";
 
+const BENCH_HELP: &str = "\
+Examples:
+  luminaire bench
+      the standard scenes on every backend, in some minutes: bench/index.html
+  luminaire bench model.toml --quick --backend compute-bvh --estimator default --estimator cosine
+      two estimators on one scene and one backend, in seconds
+  luminaire bench --out after --baseline before/bench.json
+      the same again, and what has changed by more than the noise
+
+DIR gets index.html, which needs no other file; figures.csv (every measured number with its spread), points.csv (the points of the charts), bench.json (everything)
+and the charts as SVG.
+
+A figure has become worse if its rounds all lie on the worse side of the baseline's, and the two ranges lie further apart than 5 % and than either of them is
+wide (3 times that with 3 rounds); with fewer than 3 rounds nothing is concluded.
+
+Exit codes:
+  0    measured; no figure is worse than in the baseline
+  1    a figure is worse than in the baseline, a section failed (the others are written), or a file or device is missing
+  2    wrong usage
+  130  interrupted; nothing is written";
+
 /// A path tracer on Vulkan: ray queries or a compute-shader BVH, with a double-precision reference.
 #[derive(Debug, clap::Parser)]
 #[command(version, about, after_help = format!("{EXAMPLES}{EXIT_CODES}"), subcommand_required = true)]
@@ -93,6 +117,61 @@ pub enum Command {
     Inspect(InspectOptions),
     /// Run methods over the ranges in which they can fail, on every backend here: charts, numbers, and a page.
     Stability(StabilityOptions),
+    /// Measure speed against accuracy: scenes, backends and estimators side by side, as a page, charts and numbers.
+    Bench(BenchOptions),
+}
+
+/// What to measure, and what to compare it with.
+#[derive(Debug, clap::Args)]
+#[command(after_help = BENCH_HELP)]
+pub struct BenchOptions {
+    /// Scene files [default: cornell, lamps, textures and instances in the folder scenes].
+    #[arg(value_name = "SCENE")]
+    pub scenes: Vec<PathBuf>,
+    /// The folder for the page and its numbers; it is made if it is missing [default: bench].
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// The page in Markdown, too, with the charts as links into the folder.
+    #[arg(long, value_name = "FILE.md")]
+    pub page: Option<PathBuf>,
+    /// Compare with the bench.json of an earlier run; exit code 1 if a figure is worse by more than the noise.
+    #[arg(long, value_name = "FILE.json")]
+    pub baseline: Option<PathBuf>,
+
+    /// Small pictures and little time: to see that it works.
+    #[arg(long, conflicts_with = "long", help_heading = "Effort")]
+    pub quick: bool,
+    /// Larger pictures and ten times the time.
+    #[arg(long, help_heading = "Effort")]
+    pub long: bool,
+    /// Width of the pictures in pixels; the height follows from the scene's aspect ratio [default: 192; 64 with --quick, 256 with --long].
+    #[arg(long, value_name = "PIXELS", conflicts_with = "reference", value_parser = clap::value_parser!(u32).range(1..=65536), help_heading = "Effort")]
+    pub width: Option<u32>,
+    /// How often everything is measured [default: 5; 3 with --quick].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000), help_heading = "Effort")]
+    pub rounds: Option<u32>,
+
+    /// Only this backend; may be given several times [default: all that are here].
+    #[arg(long, value_name = "NAME", value_parser = bench_backend, help_heading = "Selection")]
+    pub backend: Vec<BackendName>,
+    /// Only this estimator; may be given several times: `own` (the scene's) or a name of `luminaire render --estimator`, and perhaps `+independent` for
+    /// independent random numbers [default: default, default+independent, cosine, no-light-sampling, own].
+    #[arg(long, value_name = "NAME", value_parser = check_estimator, help_heading = "Selection")]
+    pub estimator: Vec<String>,
+    /// Only this section; may be given several times: `error` or `preparation` [default: all].
+    #[arg(long = "section", value_name = "NAME", help_heading = "Selection")]
+    pub sections: Vec<String>,
+    /// The picture that the only SCENE converges to, for example an EXR of many samples; the pictures take its size [default: it is
+    /// rendered].
+    #[arg(long, value_name = "FILE", help_heading = "Selection")]
+    pub reference: Option<PathBuf>,
+}
+
+fn bench_backend(name: &str) -> Result<BackendName, String> {
+    match <BackendName as clap::ValueEnum>::from_str(name, false) {
+        Ok(BackendName::Auto) | Err(_) => Err("expected ray-query, compute-bvh or cpu".into()),
+        Ok(backend) => Ok(backend),
+    }
 }
 
 /// Which sweeps to run, and where their files go.

@@ -85,7 +85,7 @@ fn command(options: &StabilityOptions) -> String {
 }
 
 /// How a page names a folder: relative to its own, with slashes, so that both can be moved together.
-fn seen_from(page: &Path, folder: &Path) -> String {
+pub(super) fn seen_from(page: &Path, folder: &Path) -> String {
     let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     let (page, folder) = (absolute(page), absolute(folder));
     let here = page.parent().unwrap_or(Path::new("/"));

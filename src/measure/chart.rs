@@ -4,7 +4,8 @@ mod ruler;
 mod svg;
 
 /// How an axis is divided.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Scale {
     /// Evenly.
     Linear,
@@ -13,7 +14,7 @@ pub enum Scale {
 }
 
 /// One axis of a chart.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Axis {
     /// What it shows, with its unit.
     pub label: String,
@@ -34,7 +35,7 @@ impl Axis {
 }
 
 /// A measured value.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Point {
     /// Where on the horizontal axis.
     pub x: f64,
@@ -45,7 +46,7 @@ pub struct Point {
 }
 
 /// The values of one method.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Series {
     /// Name of the method, as the legend and the CSV have it.
     pub name: String,
@@ -53,8 +54,9 @@ pub struct Series {
     pub points: Vec<Point>,
 }
 
-/// Lines of several methods over one quantity.
-#[derive(Debug, Clone, PartialEq)]
+/// Lines of several methods over one quantity. Where there are seven or more and all names are of the form `A on B`, the colour says A, and
+/// marker and width say B.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Chart {
     /// Part of the file's name: lower-case words with hyphens.
     pub name: String,
@@ -67,6 +69,9 @@ pub struct Chart {
     /// The lines.
     pub series: Vec<Series>,
 }
+
+/// The series of this name is the Pareto front of the others: drawn as a dashed line below them, with a ring around each of its points.
+pub const FRONT: &str = "Pareto front";
 
 /// The first line of a CSV of charts.
 pub const CSV_HEADER: &str = "chart,method,x,y,error\n";

@@ -1,7 +1,7 @@
 //! A chart as SVG: on white, for eyes that tell few colours apart, and lines upon each other to be seen.
 
 use super::ruler::Ruler;
-use super::{Chart, Scale};
+use super::{Chart, FRONT, Scale, Series};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -30,11 +30,20 @@ const FONT: &str = "sans-serif";
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Pixel = (i32, i32);
 
+/// How a series looks: a colour, and the shape of its line and markers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Look {
+    colour: usize,
+    shape: usize,
+}
+
 /// What stands in the legend.
 #[derive(Clone, Copy)]
 enum Sign {
-    /// The line of a series, by its number.
-    Series(usize),
+    /// The line of a series.
+    Series(Look),
+    /// That of the Pareto front.
+    Front,
     /// Not above zero on a logarithmic axis.
     Zero,
     /// No number.
@@ -50,8 +59,12 @@ impl Chart {
         let missing = values().any(|p| !p.y.is_finite());
         let zero = self.y.scale == Scale::Log && values().any(|p| p.y <= 0.0);
         let title = wrap(&self.title, (f64::from(WIDTH - 40) / 9.0) as usize);
-        let mut entries: Vec<(Sign, &str)> =
-            self.series.iter().enumerate().map(|(i, s)| (Sign::Series(i), s.name.as_str())).collect();
+        let mut entries: Vec<(Sign, &str)> = self
+            .looks()
+            .into_iter()
+            .zip(&self.series)
+            .map(|(look, s)| (look.map_or(Sign::Front, Sign::Series), &s.name[..]))
+            .collect();
         entries.extend(zero.then_some((Sign::Zero, "not above zero: on the lower edge")));
         entries.extend(missing.then_some((Sign::Missing, "gave no number: on the upper edge")));
         let rows = legend_rows(&entries);
@@ -105,16 +118,22 @@ impl Chart {
         root.draw(&PathElement::new([(LEFT, top), (LEFT, bottom), (right, bottom)], GREY))?;
 
         // Broad lines first, so that no line hides another.
-        let mut order: Vec<usize> = (0..self.series.len()).collect();
-        order.sort_by_key(|i| i % 3);
-        for &i in &order {
-            let series = &self.series[i];
+        let looks = self.looks();
+        for front in self.series.iter().filter(|series| series.name == FRONT) {
+            let places: Vec<Pixel> = front.points.iter().map(|p| at(p.x, p.y)).collect();
+            dashed(root, &places)?;
+            places.iter().try_for_each(|place| ring(root, *place))?;
+        }
+        let mut order: Vec<(Look, &Series)> =
+            looks.into_iter().zip(&self.series).filter_map(|(look, series)| Some((look?, series))).collect();
+        order.sort_by_key(|(look, _)| look.shape % 3);
+        for &(look, series) in &order {
             for run in series.points.split(|p| !p.y.is_finite()).filter(|run| run.len() > 1) {
-                root.draw(&PathElement::new(run.iter().map(|p| at(p.x, p.y)).collect::<Vec<_>>(), line(i)))?;
+                root.draw(&PathElement::new(run.iter().map(|p| at(p.x, p.y)).collect::<Vec<_>>(), line(look)))?;
             }
         }
-        for &i in &order {
-            for p in &self.series[i].points {
+        for &(look, series) in &order {
+            for p in &series.points {
                 if let Some(error) = p.error.filter(|e| e.is_finite() && *e > 0.0 && p.y.is_finite()) {
                     let (low, high) = (at(p.x, p.y - 2.0 * error), at(p.x, p.y + 2.0 * error));
                     let bars = [
@@ -123,17 +142,17 @@ impl Chart {
                         [(high.0 - 3, high.1), (high.0 + 3, high.1)],
                     ];
                     for bar in bars.into_iter().filter(|_| low != high) {
-                        root.draw(&PathElement::new(bar, colour(i).stroke_width(1)))?;
+                        root.draw(&PathElement::new(bar, look.colour().stroke_width(1)))?;
                     }
                 }
             }
         }
-        for &i in &order {
-            for p in &self.series[i].points {
+        for &(look, series) in &order {
+            for p in &series.points {
                 match (p.y.is_finite(), self.y.scale) {
-                    (false, _) => sign(root, Sign::Missing, (at(p.x, 1.0).0, top), colour(i))?,
-                    (true, Scale::Log) if p.y <= 0.0 => sign(root, Sign::Zero, at(p.x, 0.0), colour(i))?,
-                    _ => marker(root, i, at(p.x, p.y))?,
+                    (false, _) => sign(root, Sign::Missing, (at(p.x, 1.0).0, top), look.colour())?,
+                    (true, Scale::Log) if p.y <= 0.0 => sign(root, Sign::Zero, at(p.x, 0.0), look.colour())?,
+                    _ => marker(root, look, at(p.x, p.y))?,
                 }
             }
         }
@@ -142,9 +161,13 @@ impl Chart {
             for &(entry, name, left) in entries {
                 let middle = (left + 16, height);
                 match entry {
-                    Sign::Series(i) => {
-                        root.draw(&PathElement::new([(left, height), (left + 32, height)], line(i)))?;
-                        marker(root, i, middle)?;
+                    Sign::Series(look) => {
+                        root.draw(&PathElement::new([(left, height), (left + 32, height)], line(look)))?;
+                        marker(root, look, middle)?;
+                    }
+                    Sign::Front => {
+                        dashed(root, &[(left, height), (left + 32, height)])?;
+                        ring(root, middle)?;
                     }
                     other => sign(root, other, middle, GREY)?,
                 }
@@ -157,28 +180,83 @@ impl Chart {
 
 type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
 
-fn colour(series: usize) -> RGBColor {
-    COLOURS[series % COLOURS.len()]
+impl Look {
+    fn colour(self) -> RGBColor {
+        COLOURS[self.colour % COLOURS.len()]
+    }
+}
+
+impl Chart {
+    /// The look of every series; none for the Pareto front.
+    fn looks(&self) -> Vec<Option<Look>> {
+        let lines = || self.series.iter().filter(|series| series.name != FRONT);
+        let pairs: Option<Vec<(&str, &str)>> = lines().map(|series| series.name.rsplit_once(" on ")).collect();
+        let pairs = pairs.filter(|pairs| pairs.len() >= COLOURS.len());
+        // The place of each name among the different ones, in the order in which they come.
+        let places = |names: Vec<&str>| -> Vec<usize> {
+            let mut different: Vec<&str> = Vec::new();
+            let mut place = |name| {
+                different.iter().position(|other| *other == name).unwrap_or_else(|| {
+                    different.push(name);
+                    different.len() - 1
+                })
+            };
+            names.into_iter().map(&mut place).collect()
+        };
+        let looks: Vec<Look> = match pairs {
+            None => (0..lines().count()).map(|i| Look { colour: i, shape: i }).collect(),
+            Some(pairs) => {
+                let (what, on) = pairs.into_iter().unzip();
+                places(what).into_iter().zip(places(on)).map(|(colour, shape)| Look { colour, shape }).collect()
+            }
+        };
+        let mut looks = looks.into_iter();
+        self.series.iter().map(|series| if series.name == FRONT { None } else { looks.next() }).collect()
+    }
 }
 
 /// Every third line is broad and pale.
-fn line(series: usize) -> ShapeStyle {
-    let (width, strength) = [(5, 0.4), (3, 0.65), (1, 1.0)][series % 3];
-    colour(series).mix(strength).stroke_width(width)
+fn line(look: Look) -> ShapeStyle {
+    let (width, strength) = [(5, 0.4), (3, 0.65), (1, 1.0)][look.shape % 3];
+    look.colour().mix(strength).stroke_width(width)
+}
+
+/// A dashed line through some places.
+fn dashed(root: &Area, places: &[Pixel]) -> Drawn {
+    let (dash, gap) = (6.0, 4.0);
+    for pair in places.windows(2) {
+        let ((ax, ay), (bx, by)) = (pair[0], pair[1]);
+        let (dx, dy) = (f64::from(bx - ax), f64::from(by - ay));
+        let length = dx.hypot(dy);
+        let on = |along: f64| {
+            let share = (along / length).min(1.0);
+            (ax + (share * dx).round() as i32, ay + (share * dy).round() as i32)
+        };
+        let dashes = (length / (dash + gap)).ceil() as usize;
+        for start in (0..dashes).map(|number| number as f64 * (dash + gap)) {
+            root.draw(&PathElement::new([on(start), on(start + dash)], GREY.stroke_width(1)))?;
+        }
+    }
+    Ok(())
+}
+
+/// Around a point of the Pareto front.
+fn ring(root: &Area, place: Pixel) -> Drawn {
+    root.draw(&Circle::new(place, 11, GREY.stroke_width(1)))
 }
 
 /// The markers differ in shape, and those of broad lines are larger: several at one place are all to be seen.
-fn marker(root: &Area, series: usize, (x, y): Pixel) -> Drawn {
-    let style = colour(series).stroke_width(2);
-    let r = [7, 5, 3][series % 3];
+fn marker(root: &Area, look: Look, (x, y): Pixel) -> Drawn {
+    let style = look.colour().stroke_width(2);
+    let r = [7, 5, 3][look.shape % 3];
     let closed = |corners: &[Pixel]| {
         let path: Vec<Pixel> = corners.iter().chain(&corners[..1]).map(|(dx, dy)| (x + dx, y + dy)).collect();
         root.draw(&PathElement::new(path, style))
     };
-    match series % 5 {
+    match look.shape % 5 {
         0 => root.draw(&Circle::new((x, y), r, style)),
         1 => closed(&[(-r, -r), (r, -r), (r, r), (-r, r)]),
-        2 => root.draw(&Circle::new((x, y), r, colour(series).filled())),
+        2 => root.draw(&Circle::new((x, y), r, look.colour().filled())),
         3 => closed(&[(0, -r - 1), (r + 1, 0), (0, r + 1), (-r - 1, 0)]),
         _ => closed(&[(0, -r - 1), (r + 1, r), (-r - 1, r)]),
     }
