@@ -7,7 +7,7 @@ VALIDATION := /usr/share/vulkan/explicit_layer.d/VkLayer_khronos_validation.json
 
 LONG_FLAG := $(if $(LONG),--long)
 
-.PHONY: help render gallery accuracy stability test setup build shaders lint
+.PHONY: help render gallery accuracy stability bench test setup build shaders lint
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-9s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -21,6 +21,10 @@ gallery: setup ## render the pictures of docs/gallery.md again (five minutes on 
 
 stability: setup ## run every stability sweep again: docs/stability.md (LONG=1: finer steps, about ten times as long)
 	$(BIN) stability --out docs/stability --page docs/stability.md $(LONG_FLAG)
+
+bench: setup ## measure speed against accuracy: out/bench/index.html (some minutes; LONG=1: about an hour; BASELINE=FILE.json: compare)
+	@mkdir -p out
+	$(BIN) bench --out out/bench $(LONG_FLAG) $(if $(BASELINE),--baseline $(BASELINE))
 
 accuracy: setup ## measure the tables of docs/accuracy.md again (LONG=1: more samples, about ten times as long)
 	cargo run --release --example accuracy -- $(LONG_FLAG)

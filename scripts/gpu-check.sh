@@ -2,7 +2,7 @@
 # Checks and times luminaire on a GPU machine that has no Rust toolchain.
 #
 #   scripts/gpu-check.sh pack       here: builds, and puts all that is needed into target/gpu-check/
-#   target/gpu-check/run.sh [OUT]   there: devices, the kernel's tests, renders, and the two tables; writes into OUT
+#   target/gpu-check/run.sh [OUT]   there: devices, the kernel's tests, a render, the table of accuracy, the benchmark; writes into OUT
 #
 # The tests run on whatever the GPU offers: where it has no ray query, they say so and test the compute BVH.
 set -euo pipefail
@@ -17,10 +17,10 @@ pack() {
         sed -n 's/.*"executable":"\([^"]*\/gpu-[^"]*\)".*/\1/p' | tail -n 1)
     [ -n "$tests" ] || { echo "gpu-check: the tests of the kernel were not built" >&2; exit 1; }
     cp "$tests" $pack/gpu-tests
-    cp target/release/luminaire target/release/examples/accuracy target/release/examples/speed_table $pack
+    cp target/release/luminaire target/release/examples/accuracy $pack
     cp -r scenes $pack
     cp "$0" $pack/run.sh
-    strip $pack/gpu-tests $pack/luminaire $pack/accuracy $pack/speed_table 2>/dev/null || true
+    strip $pack/gpu-tests $pack/luminaire $pack/accuracy 2>/dev/null || true
     du -sh $pack
 }
 
@@ -33,7 +33,7 @@ check() {
     ./gpu-tests --nocapture 2>&1 | tee "$out/tests.txt" | grep -E '^(test |SKIP|test result)'
     ./luminaire render scenes/cornell/cornell.toml -o "$out/cornell.png" --spp 1024 --stats "$out/cornell.json"
     ./accuracy --out "$out/accuracy.md"
-    ./speed_table scenes/cornell/cornell.toml scenes/instances/instances.toml | tee "$out/speed.md"
+    ./luminaire bench --out "$out/bench" --page "$out/bench.md"
 }
 
 case "${1:-}" in

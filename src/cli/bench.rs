@@ -18,8 +18,11 @@ use std::time::Instant;
 /// Where the files go unless `--out` says otherwise.
 const FOLDER: &str = "bench";
 
-/// What is measured where no scene is given: one lamp; many and small ones; textures and holes; many instances.
-const SCENES: [&str; 4] = ["cornell", "lamps", "textures", "instances"];
+/// What is measured where no scene is given: diffuse surfaces under one lamp; instances; small lamps; textures and holes.
+const SCENES: [&str; 4] = ["cornell", "instances", "lamps", "textures"];
+
+/// So many of them are enough to see that it works.
+const QUICK_SCENES: usize = 2;
 
 /// True while files are written, which an exit would leave half done beside their targets.
 static WRITING: AtomicBool = AtomicBool::new(false);
@@ -107,7 +110,7 @@ fn settings(options: &BenchOptions, sections: &[Definition]) -> Result<Settings>
     let paths = match (sections.iter().any(|section| section.scenes), options.scenes.is_empty()) {
         (false, _) => vec![],
         (true, false) => options.scenes.clone(),
-        (true, true) => standard_scenes()?,
+        (true, true) => standard_scenes(if options.quick { QUICK_SCENES } else { SCENES.len() })?,
     };
     let size = match &reference {
         Some(picture) => (picture.width, Some(picture.height)),
@@ -128,10 +131,11 @@ fn settings(options: &BenchOptions, sections: &[Definition]) -> Result<Settings>
 }
 
 /// The repository's scenes.
-fn standard_scenes() -> Result<Vec<PathBuf>> {
-    let paths = SCENES.map(|name| PathBuf::from(format!("scenes/{name}/{name}.toml")));
+fn standard_scenes(count: usize) -> Result<Vec<PathBuf>> {
+    let path = |name: &&str| PathBuf::from(format!("scenes/{name}/{name}.toml"));
+    let paths: Vec<_> = SCENES[..count].iter().map(path).collect();
     match paths.iter().find(|path| !path.is_file()) {
-        None => Ok(paths.to_vec()),
+        None => Ok(paths),
         Some(missing) => Err(Error::Usage(format!(
             "no SCENE is given, and the standard ones are not in this folder ({} is missing): give scene files, or run it in \
              luminaire's repository",

@@ -125,7 +125,7 @@ pub enum Command {
 #[derive(Debug, clap::Args)]
 #[command(after_help = BENCH_HELP)]
 pub struct BenchOptions {
-    /// Scene files [default: cornell, lamps, textures and instances in the folder scenes].
+    /// Scene files [default: cornell, instances, lamps and textures in the folder scenes; the first two with --quick].
     #[arg(value_name = "SCENE")]
     pub scenes: Vec<PathBuf>,
     /// The folder for the page and its numbers; it is made if it is missing [default: bench].

@@ -54,8 +54,8 @@ pub struct Series {
     pub points: Vec<Point>,
 }
 
-/// Lines of several methods over one quantity. Where there are seven or more and all names are of the form `A on B`, the colour says A, and
-/// marker and width say B.
+/// Lines of several methods over one quantity. Where all names are of the form `A on B`, the colour says A, and marker and width
+/// say B.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Chart {
     /// Part of the file's name: lower-case words with hyphens.

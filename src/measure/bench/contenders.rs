@@ -80,7 +80,8 @@ pub(super) fn reference(scene: &Scene) -> Contender {
         Integrator::Path(own) => Integrator::Path(Estimator { max_bounces: own.max_bounces, ..Estimator::default() }),
         simple => simple,
     };
-    Contender { name: "reference".into(), integrator, sampler: Sampler::Sobol }
+    let name = if matches!(integrator, Integrator::Path(_)) { "default" } else { "simple" };
+    Contender { name: name.into(), integrator, sampler: Sampler::Sobol }
 }
 
 #[cfg(test)]

@@ -52,8 +52,8 @@ const INTRODUCTION: [&str; 2] = [
 /// A whole document: style and charts are in it, there is no script, and nothing is loaded.
 pub fn html(report: &Report) -> String {
     let mut page = format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>luminaire: benchmark</title>\n\
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<title>luminaire: benchmark</title>\n\
          <style>\n{STYLE}</style>\n</head>\n<body>\n<h1>luminaire: benchmark</h1>\n"
     );
     page += &INTRODUCTION.map(|text| format!("<p>{}</p>\n", marked(text))).concat();

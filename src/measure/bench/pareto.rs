@@ -1,16 +1,21 @@
 //! What nothing else beats.
 
-/// The Pareto front of points of a cost and an error: the numbers of those for which no other point is at most as dear and at most as wrong,
-/// and better in one of them; in ascending order of the cost, of equal points the first. Points whose error is not above zero, or not
-/// finite, are no measurement and never on the front.
+/// By what part an error has to be smaller to be worth a higher cost: less is noise, or the rounding of another backend.
+pub(super) const LEAST_GAIN: f64 = 0.05;
+
+/// The Pareto front of points of a cost and an error: the numbers of those for which no other point is at most as dear and as exact, in
+/// ascending order of the cost. An error counts as smaller if it is 5 % smaller. Points whose error is not above zero, or not finite, are no
+/// measurement and never on the front.
 pub fn front(points: &[(f64, f64)]) -> Vec<usize> {
     let sound = |&i: &usize| points[i].0.is_finite() && points[i].1.is_finite() && points[i].1 > 0.0;
     let mut order: Vec<usize> = (0..points.len()).filter(sound).collect();
     order.sort_by(|&a, &b| points[a].0.total_cmp(&points[b].0).then(points[a].1.total_cmp(&points[b].1)));
     let mut best = f64::INFINITY;
     order.retain(|&i| {
-        let better = points[i].1 < best;
-        best = best.min(points[i].1);
+        let better = points[i].1 < (1.0 - LEAST_GAIN) * best;
+        if better {
+            best = points[i].1;
+        }
         better
     });
     order
@@ -36,6 +41,8 @@ mod tests {
         ];
         assert_eq!(front(&points), [1, 3, 0]);
         assert!(front(&[]).is_empty() && front(&[(1.0, f64::NAN)]).is_empty());
+        // Slightly better is not worth more; slightly better again and again is.
+        assert_eq!(front(&[(1.0, 1.0), (2.0, 0.97), (3.0, 0.94), (4.0, 0.92)]), [0, 2]);
         // Against the definition, on many points that share costs and errors.
         let random = |i: u32| crate::sampling::random4(i, 0, 0, 0).map(|v| f64::from(v % 8));
         let many: Vec<_> = (0..200).map(|i| (random(i)[0], 1.0 + random(i)[1] + random(i)[2])).collect();

@@ -2,13 +2,13 @@
 
 use super::contenders::Contender;
 use super::spread;
+use crate::Result;
 use crate::backend::Backend;
 use crate::film::{Batch, Tile};
 use crate::image_io::Picture;
 use crate::measure::{Workbench, metrics};
 use crate::render::{End, Limits, Rendered, Tracer, render};
 use crate::scene::Scene;
-use crate::Result;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
@@ -62,7 +62,9 @@ impl Rung {
 pub(super) struct Trial {
     pub estimator: String,
     pub backend: Backend,
-    /// Seconds from the scene to the first samples, round by round. The first time shaders are compiled.
+    /// Seconds from the scene to the first samples, the first time of all: shaders are compiled, unless the driver has kept them.
+    pub first_ready_seconds: f64,
+    /// The same later, round by round.
     pub ready_seconds: Vec<f64>,
     /// In ascending order of the samples.
     pub rungs: Vec<Rung>,
@@ -72,7 +74,14 @@ pub(super) struct Trial {
 
 impl Trial {
     pub fn new(estimator: &str, backend: Backend) -> Self {
-        Trial { estimator: estimator.into(), backend, ready_seconds: Vec::new(), rungs: Vec::new(), dropped: 0 }
+        Trial {
+            estimator: estimator.into(),
+            backend,
+            first_ready_seconds: f64::NAN,
+            ready_seconds: Vec::new(),
+            rungs: Vec::new(),
+            dropped: 0,
+        }
     }
 
     /// As charts and tables call it.
@@ -150,7 +159,7 @@ fn warm_up(tracer: &mut dyn Tracer, scene: &Scene) -> Result<()> {
     tracer.trace(&Batch { tile, samples: 0..4, group: 1 }).map(drop)
 }
 
-/// Seconds of building, those from the scene to the first samples, and the bytes of device memory that it takes (none for the CPU).
+/// How long a tracer of a scene takes to be ready, and what it takes. In this order: seconds of building, those from the scene to the first samples, and the bytes of device memory that it takes (none for the CPU).
 pub(super) fn ready(bench: &Workbench, scene: &Scene, backend: Backend) -> Result<(f64, f64, Option<u64>)> {
     let before = bench.allocated_bytes(backend);
     let start = Instant::now();

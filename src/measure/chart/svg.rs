@@ -191,7 +191,6 @@ impl Chart {
     fn looks(&self) -> Vec<Option<Look>> {
         let lines = || self.series.iter().filter(|series| series.name != FRONT);
         let pairs: Option<Vec<(&str, &str)>> = lines().map(|series| series.name.rsplit_once(" on ")).collect();
-        let pairs = pairs.filter(|pairs| pairs.len() >= COLOURS.len());
         // The place of each name among the different ones, in the order in which they come.
         let places = |names: Vec<&str>| -> Vec<usize> {
             let mut different: Vec<&str> = Vec::new();
