@@ -78,8 +78,14 @@ fn a_run_and_its_baselines() {
     ];
     let output = bench(path, &[&words[..], &["--out", "first", "--page", "page.md"]].concat());
     assert!(output.status.success(), "{}", said(&output));
-    let files =
-        ["bench.json", "error-room-samples.svg", "error-room-seconds.svg", "figures.csv", "index.html", "points.csv"];
+    let files = [
+        "bench.json",
+        "convergence-room-samples.svg",
+        "convergence-room-seconds.svg",
+        "figures.csv",
+        "index.html",
+        "points.csv",
+    ];
     assert_eq!(names(&path.join("first")), files);
 
     let page = std::fs::read_to_string(path.join("first/index.html")).unwrap();
@@ -88,7 +94,7 @@ fn a_run_and_its_baselines() {
         assert!(page.contains(part), "no {part:?}");
     }
     let markdown = std::fs::read_to_string(path.join("page.md")).unwrap();
-    for part in ["(<first/error-room-seconds.svg>)", "| room | cpu | cosine |", "## Error over time"] {
+    for part in ["(<first/convergence-room-seconds.svg>)", "| room | cpu | cosine |", "## Error over time"] {
         assert!(markdown.contains(part), "no {part:?}");
     }
 
@@ -99,12 +105,12 @@ fn a_run_and_its_baselines() {
     assert_eq!(csv.lines().count(), 1 + figures.len());
     let columns = |line: &str| line.split(',').count();
     assert!(csv.lines().all(|line| columns(line) == 8), "{csv}");
-    assert!(csv.contains("\nerror,room/cpu/default/1-spp,seconds,s,"), "{csv}");
+    assert!(csv.contains("\nconvergence,room/cpu/default/1-spp,seconds,s,"), "{csv}");
     assert!(csv.contains("\npreparation,room/cpu,build-seconds,s,"), "{csv}");
     let value = |name: &str| figures.iter().find(|f| f["name"] == name).expect(name)["median"].as_f64().unwrap();
-    // Twelve rays of the floor at most see the lamp; the error falls, and costs time.
-    assert!(value("error/room/cpu/default/4-spp/relmse") < value("error/room/cpu/default/1-spp/relmse"));
-    assert!(value("error/room/cpu/default/4-spp/seconds") > 0.0);
+    // More samples are more exact.
+    assert!(value("convergence/room/cpu/default/4-spp/relmse") < value("convergence/room/cpu/default/1-spp/relmse"));
+    assert!(value("convergence/room/cpu/default/4-spp/seconds") > 0.0);
     let points: usize = sections
         .iter()
         .flat_map(|section| section["charts"].as_array().unwrap())
@@ -130,16 +136,18 @@ fn a_run_and_its_baselines() {
         let output = bench(path, &[&words[..], &["--out", "second", "--baseline", "other.json"]].concat());
         let said = said(&output);
         assert_eq!(output.status.code(), Some(code), "{said}");
-        assert!(said.contains(&format!("\n  {part}  error/room/cpu/")), "{said}");
+        let told =
+            |line: &str| line.trim().starts_with(part) && line.contains(" convergence/room/cpu/default/1-spp/relmse ");
+        assert!(said.lines().any(told), "{said}");
         assert!(said.contains("was another device"), "{said}");
         assert_eq!(said.contains("error: "), code == 1, "{said}");
     }
     // Nothing in common: nothing is compared, and that is no success.
-    let renamed = record.to_string().replace("\"error/", "\"terror/").replace("\"preparation/", "\"separation/");
+    let renamed = record.to_string().replace("\"preparation/", "\"separation/");
     std::fs::write(path.join("other.json"), renamed).unwrap();
     let output = bench(path, &[&words[..], &["--baseline", "other.json", "--section", "preparation"]].concat());
     assert_eq!(output.status.code(), Some(2), "{}", said(&output));
-    assert!(said(&output).contains("only in the baseline\n  separation/"), "{}", said(&output));
+    assert!(said(&output).contains("\n  separation/room/load-seconds"), "{}", said(&output));
 }
 
 /// A run held against itself has no difference, whatever its spread.
@@ -147,15 +155,15 @@ fn a_run_and_its_baselines() {
 fn a_run_is_no_worse_than_itself() {
     let figure = |name: &str, values: &[f64]| Figure::of(name.into(), "s", Better::Lower, values).unwrap();
     let section = |factor: f64| Section {
-        name: "error",
+        name: "convergence",
         title: "A <title>".into(),
         text: vec!["`code` & text".into()],
         tables: vec![],
         charts: vec![],
         figures: vec![
-            figure("error/a/seconds", &[factor, 1.1 * factor, 1.2 * factor]),
-            figure("error/b/relmse", &[-0.1, 0.0, 0.1]),
-            figure("error/c/seconds", &[1.0]),
+            figure("convergence/a/seconds", &[factor, 1.1 * factor, 1.2 * factor]),
+            figure("convergence/b/relmse", &[-0.1, 0.0, 0.1]),
+            figure("convergence/c/seconds", &[1.0]),
         ],
     };
     let settings = Settings {
@@ -210,7 +218,7 @@ fn a_given_reference() {
         "--estimator",
         "own",
         "--section",
-        "error",
+        "convergence",
         "--reference",
         "truth.exr",
     ];
@@ -274,7 +282,7 @@ fn wrong_commands_are_told_before_the_work() {
     };
     fails(&[], 2, &["no SCENE", "scenes/cornell/cornell.toml"]);
     fails(&["none.toml"], 1, &["none.toml"]);
-    fails(&["room.toml", "--section", "nonsense"], 2, &["nonsense", "error", "preparation"]);
+    fails(&["room.toml", "--section", "nonsense"], 2, &["nonsense", "convergence", "preparation"]);
     fails(&["room.toml", "--estimator", "photon"], 2, &["photon", "`own`", "+independent"]);
     fails(&["room.toml", "--backend", "auto"], 2, &["ray-query"]);
     fails(&["room.toml", "--quick", "--long"], 2, &["--long"]);

@@ -144,7 +144,7 @@ pub struct BenchOptions {
     /// Larger pictures and ten times the time.
     #[arg(long, help_heading = "Effort")]
     pub long: bool,
-    /// Width of the pictures in pixels; the height follows from the scene's aspect ratio [default: 192; 64 with --quick, 256 with --long].
+    /// Width of the pictures in pixels; the height follows from the scene's aspect ratio [default: 128; 64 with --quick, 256 with --long].
     #[arg(long, value_name = "PIXELS", conflicts_with = "reference", value_parser = clap::value_parser!(u32).range(1..=65536), help_heading = "Effort")]
     pub width: Option<u32>,
     /// How often everything is measured [default: 5; 3 with --quick].
@@ -158,7 +158,7 @@ pub struct BenchOptions {
     /// independent random numbers [default: default, default+independent, cosine, no-light-sampling, own].
     #[arg(long, value_name = "NAME", value_parser = check_estimator, help_heading = "Selection")]
     pub estimator: Vec<String>,
-    /// Only this section; may be given several times: `error` or `preparation` [default: all].
+    /// Only this section; may be given several times: `convergence` or `preparation` [default: all].
     #[arg(long = "section", value_name = "NAME", help_heading = "Selection")]
     pub sections: Vec<String>,
     /// The picture that the only SCENE converges to, for example an EXR of many samples; the pictures take its size [default: it is

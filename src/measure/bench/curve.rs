@@ -13,7 +13,7 @@ use crate::scene::Scene;
 
 /// The section of errors over time and samples.
 pub(super) const DEFINITION: Definition =
-    Definition { name: "error", title: "Error over time, by estimator and backend", scenes: true, run };
+    Definition { name: "convergence", title: "Error over time, by estimator and backend", scenes: true, run };
 
 /// The seed of the reference is the scene's with these bits changed; the rounds' are the next after the scene's.
 const REFERENCE_SEED: u32 = 0x5eed_0000;

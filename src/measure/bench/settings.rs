@@ -29,7 +29,7 @@ impl Effort {
     pub fn width(self) -> u32 {
         match self {
             Effort::Quick => 64,
-            Effort::Standard => 192,
+            Effort::Standard => 128,
             Effort::Long => 256,
         }
     }
@@ -38,7 +38,7 @@ impl Effort {
     pub fn budget_seconds(self) -> f64 {
         match self {
             Effort::Quick => 0.15,
-            Effort::Standard => 1.0,
+            Effort::Standard => 1.2,
             Effort::Long => 10.0,
         }
     }

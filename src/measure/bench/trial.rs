@@ -17,7 +17,7 @@ pub(super) const STEP: u32 = 4;
 /// Samples of the last render, however much time is left.
 const MOST_SAMPLES: u32 = 1 << 18;
 /// There are at least so many renders, however slow they are.
-const LEAST_RUNGS: usize = 2;
+const LEAST_RUNGS: usize = 3;
 
 /// The renders at one number of samples, a value a round.
 #[derive(Debug, Clone)]
