@@ -132,21 +132,19 @@ fn fastest(bench: &Workbench, settings: &Settings, scene: &Scene) -> Result<Back
 fn findings(measured: &Measured) -> Vec<String> {
     let Measured { name, trials, own_error, notes } = measured;
     let mut words = vec![format!("{name}: {}", notes.join(" "))];
-    let (points, whose) = points(trials);
-    let on_front = front(&points);
-    let mut runs: Vec<(usize, Vec<usize>)> = Vec::new();
-    for &point in &on_front {
+    let places = places(trials);
+    let mut runs: Vec<(usize, Vec<String>)> = Vec::new();
+    for place in on_front(&places) {
         match runs.last_mut() {
-            Some((trial, members)) if *trial == whose[point].0 => members.push(point),
-            _ => runs.push((whose[point].0, vec![point])),
+            Some((trial, samples)) if *trial == place.trial => samples.push(place.spp.to_string()),
+            _ => runs.push((place.trial, vec![place.spp.to_string()])),
         }
     }
     let runs: Vec<String> = runs
         .iter()
-        .map(|(trial, members)| {
-            let trial = &trials[*trial];
-            let samples: Vec<_> = members.iter().map(|p| trial.rungs[whose[*p].1].spp.to_string()).collect();
-            format!("{} with {} sample{}", trial.name(), samples.join(", "), if samples == ["1"] { "" } else { "s" })
+        .map(|(trial, samples)| {
+            let plural = if *samples == ["1"] { "" } else { "s" };
+            format!("{} with {} sample{plural}", trials[*trial].name(), samples.join(", "))
         })
         .collect();
     words.push(format!("{name}: on the Pareto front, from the fastest to the most exact, are {}.", runs.join("; ")));
@@ -169,11 +167,11 @@ fn findings(measured: &Measured) -> Vec<String> {
             number(100.0 * off)
         ));
     }
-    let near = own_error.map_or(0, |own| points.iter().filter(|(_, error)| *error < 2.0 * own).count());
+    let near = own_error.map_or(0, |own| places.iter().filter(|place| place.at.1 < 2.0 * own).count());
     if near > 0 {
         words.push(format!(
             "{name}: {near} of {} points are less than twice the reference's own error, and uncertain.",
-            points.len()
+            places.len()
         ));
     }
     let dropped: u64 = trials.iter().map(|trial| trial.dropped).sum();
@@ -200,10 +198,24 @@ fn agreement(trials: &[Trial]) -> Option<f64> {
         .reduce(f64::max)
 }
 
-/// All renders as points of seconds and relMSE, and which trial and rung each is.
-fn points(trials: &[Trial]) -> (Vec<(f64, f64)>, Vec<(usize, usize)>) {
-    let all = trials.iter().enumerate().flat_map(|(t, trial)| (0..trial.rungs.len()).map(move |r| (t, r)));
-    all.map(|(t, r)| ((trials[t].rungs[r].median_seconds(), trials[t].rungs[r].error().0), (t, r))).unzip()
+/// A render as a point of the chart.
+struct Place {
+    trial: usize,
+    spp: u32,
+    /// Seconds and relMSE.
+    at: (f64, f64),
+}
+
+/// All renders.
+fn places(trials: &[Trial]) -> Vec<Place> {
+    let all = trials.iter().enumerate().flat_map(|(i, trial)| trial.rungs.iter().map(move |rung| (i, rung)));
+    all.map(|(trial, rung)| Place { trial, spp: rung.spp, at: (rung.median_seconds(), rung.error().0) }).collect()
+}
+
+/// Those on the Pareto front, the fastest first.
+fn on_front(places: &[Place]) -> impl Iterator<Item = &Place> {
+    let points: Vec<_> = places.iter().map(|place| place.at).collect();
+    front(&points).into_iter().map(|i| &places[i])
 }
 
 fn charts(measured: &Measured) -> [Chart; 2] {
@@ -216,12 +228,9 @@ fn charts(measured: &Measured) -> [Chart; 2] {
         name: trial.name(),
         points: trial.rungs.iter().map(|rung| point(rung, rung.median_seconds())).collect(),
     };
-    let (points, _) = points(trials);
     let mut series: Vec<Series> = trials.iter().map(over_seconds).collect();
-    series.push(Series {
-        name: FRONT.into(),
-        points: front(&points).into_iter().map(|i| Point { x: points[i].0, y: points[i].1, error: None }).collect(),
-    });
+    let front = on_front(&places(trials)).map(|place| Point { x: place.at.0, y: place.at.1, error: None }).collect();
+    series.push(Series { name: FRONT.into(), points: front });
     // The error at a number of samples does not depend on the backend: the one that got furthest stands for all.
     let mut furthest: Vec<&Trial> = Vec::new();
     for trial in trials {
@@ -296,7 +305,7 @@ fn rate_table(all: &[Measured]) -> Table {
         let same = |t: &&Trial| Some(t.backend) == first && t.estimator == trial.estimator;
         // Round by round, at the largest number of samples that both have.
         let ratio = measured.trials.iter().find(same).map_or([f64::NAN; 3], |other| {
-            let shared = trial.rungs.iter().zip(&other.rungs).last();
+            let shared = trial.rungs.iter().zip(&other.rungs).next_back();
             let pairs = shared.map_or(vec![], |(a, b)| a.seconds.iter().zip(&b.seconds).map(|(a, b)| b / a).collect());
             spread(&pairs)
         });

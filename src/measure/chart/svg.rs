@@ -313,7 +313,30 @@ fn legend_rows<'a>(entries: &[(Sign, &'a str)]) -> Vec<Vec<(Sign, &'a str, i32)>
 
 #[cfg(test)]
 mod tests {
-    use super::wrap;
+    use super::*;
+    use crate::measure::chart::{Axis, Point};
+
+    fn chart(names: &[&str]) -> Chart {
+        let points = vec![Point { x: 1.0, y: 1.0, error: None }, Point { x: 2.0, y: 0.5, error: None }];
+        let series = names.iter().map(|name| Series { name: (*name).into(), points: points.clone() }).collect();
+        Chart { name: "c".into(), title: "t".into(), x: Axis::log("x"), y: Axis::log("y"), series }
+    }
+
+    #[test]
+    fn colours_say_what_and_shapes_say_on_what() {
+        let look = |colour, shape| Some(Look { colour, shape });
+        let looks = chart(&["a on x", FRONT, "b on x", "a on y", "b on y"]).looks();
+        assert_eq!(looks, [look(0, 0), None, look(1, 0), look(0, 1), look(1, 1)]);
+        assert_eq!(chart(&["a on x", "plain", FRONT]).looks(), [look(0, 0), look(1, 1), None]);
+    }
+
+    /// Rings around its points and one in the legend, and a line that is none of the others.
+    #[test]
+    fn the_front_has_rings() {
+        let rings = |names: &[&str]| chart(names).svg().matches("r=\"11\"").count();
+        assert_eq!((rings(&["a"]), rings(&["a", FRONT])), (0, 3));
+        assert!(chart(&["a", FRONT]).svg().contains(FRONT));
+    }
 
     #[test]
     fn words_are_not_broken() {
