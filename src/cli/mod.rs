@@ -16,7 +16,7 @@ mod watch;
 
 use luminaire::Error;
 use luminaire::backend::Backend;
-use luminaire::measure::bench::check_estimator;
+use luminaire::measure::bench::{SECTIONS, check_estimator};
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -158,8 +158,8 @@ pub struct BenchOptions {
     /// independent random numbers [default: default, default+independent, cosine, no-light-sampling, own].
     #[arg(long, value_name = "NAME", value_parser = check_estimator, help_heading = "Selection")]
     pub estimator: Vec<String>,
-    /// Only this section; may be given several times: `convergence` or `preparation` [default: all].
-    #[arg(long = "section", value_name = "NAME", help_heading = "Selection")]
+    /// Only this section; may be given several times [default: all].
+    #[arg(long = "section", value_name = "NAME", value_parser = clap::builder::PossibleValuesParser::new(SECTIONS.iter().map(|section| section.name)), help_heading = "Selection")]
     pub sections: Vec<String>,
     /// The picture that the only SCENE converges to, for example an EXR of many samples; the pictures take its size [default: it is
     /// rendered].

@@ -30,6 +30,29 @@ pub fn check_estimator(name: &str) -> Result<String, String> {
     Err(format!("expected `own`, {}, and after it perhaps `+independent` or `+sobol`", names.join(", ")))
 }
 
+/// What an estimator does, for readers who do not know its name.
+pub(super) fn words(name: &str) -> String {
+    let (estimator, numbers) = name.split_once('+').unwrap_or((name, ""));
+    let words = match estimator {
+        "default" => {
+            "light is sampled and also found by chance (multiple importance sampling), directions by the BSDF, Russian roulette"
+        }
+        "no-light-sampling" => {
+            "light is only found where a path happens to meet it (Kajiya), cosine-distributed directions"
+        }
+        "uniform" => "light is sampled by area, directions evenly over the hemisphere",
+        "cosine" => "light is sampled by area, cosine-distributed directions, the survivors of extinction re-weighted",
+        "literal-extinction" => "the same as cosine, but survivors are not re-weighted: darker than the truth",
+        "threshold" => "cosine, and a path ends below a combined albedo of 1e-4: a little darker than the truth",
+        _ => "what the scene asks for",
+    };
+    match numbers {
+        "independent" => format!("`{name}`: {words}; independent random numbers"),
+        "" if estimator == "own" => format!("`{name}`: {words}"),
+        _ => format!("`{name}`: {words}; Sobol points"),
+    }
+}
+
 /// The contenders of these names for a scene, each once, and why any is left out. All of them have the same expectation, but for the biases
 /// that they are known for.
 pub(super) fn contenders(scene: &Scene, names: &[String]) -> (Vec<Contender>, Vec<String>) {
@@ -113,6 +136,15 @@ mod tests {
         assert_eq!(run(&scene, &["cosine", "no-light-sampling"]), (vec!["cosine".into()], 1));
         scene.integrator = Integrator::Simple { ambient: Vec3::ZERO };
         assert_eq!(run(&scene, &STANDARD), (vec!["own".into()], 4));
+    }
+
+    #[test]
+    fn every_preset_is_explained() {
+        let known = words("own");
+        for name in Estimator::preset_names() {
+            assert!(!words(name).contains(known.split_once(": ").unwrap().1), "{name}");
+        }
+        assert!(words("cosine+independent").ends_with("; independent random numbers"));
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Error over time: which estimator on which backend has the smallest error after so many seconds.
 
-use super::contenders::{contenders, reference};
+use super::contenders::{contenders, reference, words};
 use super::pareto::LEAST_GAIN;
 use super::trial::{Reference, Rung, STEP, Trial, ready};
 use super::words::{number, with_spread};
@@ -54,6 +54,9 @@ fn run(bench: &Workbench, settings: &Settings, tell: Tell) -> Result<Section> {
         tell(&format!("{}/{} {}", number + 1, settings.scenes.len(), scene.name));
         all.push(measure(bench, settings, scene, tell)?);
     }
+    let ran = |name: &&String| all.iter().any(|of| of.trials.iter().any(|trial| trial.estimator == **name));
+    let estimators: Vec<_> = settings.estimators.iter().filter(ran).map(|name| words(name)).collect();
+    text.push(format!("The estimators. {}.", estimators.join(". ")));
     text.extend(all.iter().flat_map(findings));
     Ok(Section {
         name: DEFINITION.name,
