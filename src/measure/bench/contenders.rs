@@ -59,7 +59,7 @@ pub(super) fn contenders(scene: &Scene, names: &[String]) -> (Vec<Contender>, Ve
     let (mut found, mut left_out): (Vec<Contender>, Vec<String>) = (Vec::new(), Vec::new());
     for name in names {
         match contender(scene, name) {
-            Err(reason) => left_out.push(format!("{name} is left out: {reason}")),
+            Err(reason) => left_out.push(format!("`{name}` is left out: {reason}.")),
             Ok(new) if found.iter().any(|c| (c.integrator, c.sampler) == (new.integrator, new.sampler)) => {}
             Ok(new) => found.push(new),
         }

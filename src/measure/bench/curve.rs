@@ -57,7 +57,7 @@ fn run(bench: &Workbench, settings: &Settings, tell: Tell) -> Result<Section> {
     let ran = |name: &&String| all.iter().any(|of| of.trials.iter().any(|trial| trial.estimator == **name));
     let estimators: Vec<_> = settings.estimators.iter().filter(ran).map(|name| words(name)).collect();
     text.push(format!("The estimators. {}.", estimators.join(". ")));
-    text.extend(all.iter().flat_map(findings));
+    text.extend(all.iter().map(findings));
     Ok(Section {
         name: DEFINITION.name,
         title: DEFINITION.title.into(),
@@ -132,9 +132,9 @@ fn fastest(bench: &Workbench, settings: &Settings, scene: &Scene) -> Result<Back
 }
 
 /// What the measurements of a scene say, in sentences.
-fn findings(measured: &Measured) -> Vec<String> {
+fn findings(measured: &Measured) -> String {
     let Measured { name, trials, own_error, notes } = measured;
-    let mut words = vec![format!("{name}: {}", notes.join(" "))];
+    let mut words = notes.clone();
     let places = places(trials);
     let mut runs: Vec<(usize, Vec<String>)> = Vec::new();
     for place in on_front(&places) {
@@ -150,13 +150,13 @@ fn findings(measured: &Measured) -> Vec<String> {
             format!("{} with {} sample{plural}", trials[*trial].name(), samples.join(", "))
         })
         .collect();
-    words.push(format!("{name}: on the Pareto front, from the fastest to the most exact, are {}.", runs.join("; ")));
+    words.push(format!("On the Pareto front, from the fastest to the most exact, are {}.", runs.join("; ")));
     let cost = |trial: &Trial| trial.rungs.last().map_or(f64::NAN, |rung| spread(&rung.costs())[0]);
     let mut order: Vec<&Trial> = trials.iter().filter(|t| cost(t) > 0.0).collect();
     order.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
     if let [best, .., last] = order[..] {
         words.push(format!(
-            "{name}: relMSE times seconds at the longest renders is least for {} ({}), and {} times that for {}.",
+            "relMSE times seconds at the longest renders is least for {} ({}), and {} times that for {}.",
             best.name(),
             number(cost(best)),
             number(cost(last) / cost(best)),
@@ -166,26 +166,26 @@ fn findings(measured: &Measured) -> Vec<String> {
     let agree = agreement(trials);
     if let Some(off) = agree {
         words.push(format!(
-            "{name}: all backends draw the same random numbers; at equal samples their relMSE differs by at most {} %.",
+            "All backends draw the same random numbers; at equal samples their relMSE differs by at most {} %.",
             number(100.0 * off)
         ));
     }
     let near = own_error.map_or(0, |own| places.iter().filter(|place| place.at.1 < 2.0 * own).count());
     if near > 0 {
         words.push(format!(
-            "{name}: {near} of {} points are less than twice the reference's own error, and uncertain.",
+            "{near} of {} points are less than twice the reference's own error, and uncertain.",
             places.len()
         ));
     }
     let dropped: u64 = trials.iter().map(|trial| trial.dropped).sum();
     if dropped > 0 {
-        words.push(format!("{name}: {dropped} samples were not finite, and are left out."));
+        words.push(format!("{dropped} samples were not finite, and are left out."));
     }
     let biased: Vec<_> = trials.iter().map(|t| &t.estimator[..]).filter(|e| is_biased(e)).collect();
     if let Some(estimator) = biased.first() {
-        words.push(format!("{name}: `{estimator}` has a bias, at which its error ends falling."));
+        words.push(format!("`{estimator}` has a bias, at which its error ends falling."));
     }
-    words
+    format!("{name}: {}", words.join(" "))
 }
 
 fn is_biased(estimator: &str) -> bool {

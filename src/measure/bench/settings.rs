@@ -43,12 +43,12 @@ impl Effort {
         }
     }
 
-    /// Seconds for the reference of a scene.
+    /// Seconds for the reference of a scene: enough that its own error is well below those that are measured.
     pub fn reference_seconds(self) -> f64 {
         match self {
             Effort::Quick => 1.0,
-            Effort::Standard => 10.0,
-            Effort::Long => 100.0,
+            Effort::Standard => 20.0,
+            Effort::Long => 200.0,
         }
     }
 }
