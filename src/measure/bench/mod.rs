@@ -2,6 +2,15 @@
 //!
 //! Every part of it gives a [`Section`]: what was measured as numbers with their spread, and the charts and sentences made of them.
 
+pub mod break_even;
+pub mod growth;
+pub mod intersectors;
+pub mod meshes;
+pub mod power_law;
+pub mod ray_kinds;
+pub mod ray_section;
+pub mod rounds;
+
 use super::chart::Chart;
 
 /// What a part of the benchmark found.
