@@ -106,10 +106,7 @@ fn check_rays(bench: &Workbench, backends: Vec<Backend>) {
     assert_eq!(figures(&section, "/cpu/"), 4 * 5);
     assert_eq!(section.figures.len(), 4 * (5 + 6 * gpu));
     assert_eq!(section.charts.iter().any(|chart| chart.name == "triangles-ratio"), gpu == 2);
-    assert_eq!(
-        section.text.iter().any(|t| t.contains("Rays a second of compute BVH over those of ray query")),
-        gpu == 2
-    );
+    assert_eq!(section.text.iter().any(|t| t.contains("How many times as many rays a second")), gpu == 2);
     assert_eq!(section.text.iter().any(|t| t.contains("the reference is alone")), gpu == 0);
 }
 
@@ -198,10 +195,10 @@ fn the_path_tracer_s_growth_is_measured() {
     let costs = growth::measure(&bench, &plan, &mut |_| {}).expect("the scenes are rendered");
     assert_eq!(costs.len(), 8 * plan.backends.len());
     for cost in &costs {
-        // A camera ray, a shadow ray for most surfaces, and another ray for each bounce; lamps and their upper sides end some paths.
+        // A ray from the camera; at most surfaces a shadow ray, and one that goes on, after the last of them only to a lamp.
         let surfaces = if cost.quantity == growth::Quantity::Bounces { cost.x } else { 3.0 };
         let rays = cost.rays_a_sample;
-        assert!((0.4..=1.05).contains(&(rays / (2.0 * surfaces))), "{rays} rays a sample: {cost:?}");
+        assert!(rays > surfaces && rays <= 2.0 * surfaces + 1.0, "{rays} rays a sample: {cost:?}");
         let product = cost.rate().median() * cost.ray().median();
         assert!((product - 1e3).abs() < 1e-6, "{product}");
     }

@@ -44,9 +44,9 @@ impl Plan {
         Plan {
             backends: bench.backends(),
             luminaires: vec![1, 10, 100, 1000, 10_000],
-            sides: if large { vec![64, 128, 256, 512, 1024] } else { vec![64, 128, 256, 512] },
+            sides: if large { vec![64, 128, 256, 512, 1024] } else { vec![32, 64, 128, 256] },
             bounces: vec![0, 1, 2, 4, 8, 16, 32],
-            side: if software { 96 } else { 512 },
+            side: if software { 48 } else { 512 },
             group: if software { 1 } else { 4 },
             rounds: if bench.long { 11 } else { 5 },
             seconds: if bench.long { 0.2 } else { 0.05 },
@@ -213,6 +213,9 @@ impl Picture {
         picture.render_tile(Tile { x: 0, y: 0, width: side.min(8), height: side.min(8) }, 0)?;
         for _ in 0..2 {
             let seconds = picture.render()?.seconds;
+            if seconds >= plan.seconds {
+                break;
+            }
             let wanted = f64::from(picture.samples) * plan.seconds / seconds.max(1e-7);
             picture.samples = (wanted / f64::from(least)).ceil().clamp(1.0, 4096.0) as u32 * least;
         }
@@ -257,13 +260,16 @@ pub fn section(plan: &Plan, costs: &[Cost]) -> Section {
     let mut text = vec![format!(
         "A room with a block and small lamps below its ceiling, which have the same area together whatever their number, rendered by the whole path \
          tracer with multiple importance sampling and without roulette: every path goes on to its limit of bounces. Where nothing else is said it has \
-         {LUMINAIRES} lamps, {BOUNCES} bounces and {0} by {0} pixels. Times are the device's own where it has a clock, {1} rounds of about {2} s in \
+         {LUMINAIRES} lamps, {BOUNCES} bounces and {0} by {0} pixels. Times are the device's own where it has a clock, {1} rounds of {2} s at least in \
          which the backends take turns. The exponent is that of the power law fitted to the points (least squares of the logarithms), with its standard \
          error; 0 is no growth, 1 is in proportion. How the cost of a ray grows with triangles and instances is said with the rays alone.",
-        plan.side,
-        plan.rounds,
-        digits(plan.seconds)
+        plan.side, plan.rounds, plan.seconds
     )];
+    if let Some(side) = plan.sides.iter().max().filter(|side| **side < 1024) {
+        text.push(format!(
+            "Pictures larger than {side} by {side} pixels are left out: without a GPU they take minutes."
+        ));
+    }
     let mut charts = Vec::new();
     for quantity in [Quantity::Luminaires, Quantity::Resolution, Quantity::Bounces] {
         let by_ray = quantity == Quantity::Luminaires;

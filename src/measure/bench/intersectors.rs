@@ -42,8 +42,8 @@ impl Plan {
             backends: bench.backends(),
             triangles: powers(if large { 7 } else { 6 }).skip(3).collect(),
             instances: powers(5).collect(),
-            // A GPU wants a million rays in flight.
-            side: if bench.is_software() { 256 } else { 1024 },
+            // Traced many times in one dispatch, so that any GPU has enough of them in flight.
+            side: if bench.is_software() { 128 } else { 512 },
             rounds: if bench.long { 11 } else { 5 },
             seconds: if bench.long { 0.1 } else { 0.03 },
         }
@@ -58,7 +58,7 @@ pub struct Intersector {
     /// Seconds to build what rays are traced against, and to upload it.
     pub build: Rounds,
     /// Seconds of that on the host before the driver sees anything: building the BVH, or sorting the triangles for the driver; none for the reference.
-    pub host: Option<f64>,
+    pub host: Rounds,
     /// Bytes of device memory that the room holds; none for the reference.
     pub bytes: Option<u64>,
     /// Millions of rays a second, by the order of [`Kind::ALL`].
@@ -184,7 +184,7 @@ impl Intersector {
         Intersector {
             backend,
             build: empty(),
-            host: None,
+            host: empty(),
             bytes: None,
             rates: [empty(), empty(), empty(), empty()],
             mismatches: [0; 4],
@@ -211,17 +211,18 @@ fn build(
             }
             Err(error) => return Err(error),
         };
-        let host = host_seconds(&room.scene, *backend);
+        let host = Rounds(vec![host_seconds(&room.scene, *backend)]);
         let bytes = Some(tracer.scene_bytes);
         let build = Rounds(vec![tracer.build_seconds]);
         tracers.push((measured.intersectors.len(), tracer));
-        measured.intersectors.push(Intersector { build, host: Some(host), bytes, ..Intersector::new(*backend) });
+        measured.intersectors.push(Intersector { build, host, bytes, ..Intersector::new(*backend) });
     }
     for _ in 1..BUILDS {
         for (which, tracer) in &tracers {
             if tracer.build_seconds <= LONG_BUILD {
                 let here = &mut measured.intersectors[*which];
                 here.build.0.push(bench.ray_tracer(&room.scene, here.backend, &[])?.build_seconds);
+                here.host.0.push(host_seconds(&room.scene, here.backend));
             }
         }
     }

@@ -54,12 +54,11 @@ fn how(plan: &Plan, rooms: &[Measured]) -> Vec<String> {
              triangles. No ray escapes."
         ),
         format!(
-            "Every timing is of the rays traced over and over for about {} s, by the device's clock where it has one; the intersectors take \
+            "Every timing is of the rays traced over and over for about {} s at least, by the device's clock where it has one; the intersectors take \
              turns, {} rounds of them, after a warm-up that also compiles. Tables have the median and (least to most); bars in the charts are two \
              standard errors. Building is the time from the scene in memory to its first ray, upload included, without the compilation of \
              kernels.",
-            digits(plan.seconds),
-            plan.rounds
+            plan.seconds, plan.rounds
         ),
     ];
     for backend in plan.backends.iter().filter(|b| **b != Backend::Cpu) {
@@ -107,11 +106,11 @@ fn findings(rooms: &[Measured]) -> Vec<String> {
         let (Some((small, first)), Some((large, last))) = (both.first(), both.last()) else { continue };
         let of_kinds = |ratios: &[Rounds; 4]| {
             let words =
-                Kind::ALL.iter().zip(ratios).map(|(kind, r)| format!("{} {}", digits(r.median()), kind.words()));
+                Kind::ALL.iter().zip(ratios).map(|(kind, r)| format!("{} ({})", digits(r.median()), kind.words()));
             words.collect::<Vec<_>>().join(", ")
         };
         text.push(format!(
-            "Rays a second of compute BVH over those of ray query, {thing}: {} at {}, {} at {}.",
+            "How many times as many rays a second compute BVH traces as ray query, by kind: {} at {} {thing}; {} at {}.",
             of_kinds(first),
             small.count,
             of_kinds(last),
@@ -121,9 +120,9 @@ fn findings(rooms: &[Measured]) -> Vec<String> {
         let verdicts: Vec<_> = both.iter().filter_map(|(room, _)| Some((room, break_even(room, bounce)?))).collect();
         let always = |which: BreakEven| verdicts.iter().all(|(_, verdict)| *verdict == which);
         text.push(if always(BreakEven::First) {
-            format!("Building and tracing bounce rays together, ray query never catches up here, whatever the number of {thing}.")
+            format!("Building and tracing bounce rays together, ray query never catches up here, whatever the number of {thing} and of rays.")
         } else if always(BreakEven::Second) {
-            format!("Building and tracing bounce rays together, compute BVH never catches up here, whatever the number of {thing}.")
+            format!("Building and tracing bounce rays together, compute BVH never catches up here, whatever the number of {thing} and of rays.")
         } else {
             let each = verdicts.iter().map(|(room, verdict)| {
                 let words = verdict.words("compute BVH", "ray query");
@@ -138,11 +137,11 @@ fn findings(rooms: &[Measured]) -> Vec<String> {
     text
 }
 
-/// Triangles or instances, as an axis has them.
+/// A family's part of names, of titles, and its axis.
 fn words_of(family: Family) -> (&'static str, &'static str, &'static str) {
     match family {
-        Family::Triangles => ("triangles", "one mesh", "triangles"),
-        Family::Instances => ("instances", "instances of 972 triangles", "instances"),
+        Family::Triangles => ("triangles", "over the triangles of one mesh", "triangles"),
+        Family::Instances => ("instances", "over instances of 972 triangles", "instances"),
     }
 }
 
@@ -168,7 +167,7 @@ fn family_charts(plan: &Plan, family: Family, rooms: &[&Measured]) -> Vec<Chart>
         let series = lines(&|i| Some(i.rates[k].clone()));
         charts.push(chart(
             kind.name(),
-            format!("{} rays, {title}", capital(kind.words())),
+            format!("{} rays a second {title}", capital(kind.words())),
             "million rays a second",
             series,
         ));
@@ -179,21 +178,21 @@ fn family_charts(plan: &Plan, family: Family, rooms: &[&Measured]) -> Vec<Chart>
     };
     let series: Vec<Series> = Kind::ALL.into_iter().enumerate().map(ratio).collect();
     if series.iter().any(|s| !s.points.is_empty()) {
-        let title = format!("Rays a second, compute BVH over ray query, {title}");
-        charts.push(chart("ratio", title, "compute BVH is so many times as fast as ray query", series));
+        let title = format!("Compute BVH against ray query {title}: above 1 compute BVH is faster");
+        charts.push(chart("ratio", title, "rays a second of compute BVH / those of ray query", series));
     }
     let bounce = Kind::Bounce as usize;
     let cost = with_exponents(lines(&|i| Some(i.rates[bounce].map(|rate| 1e3 / rate))));
     charts.push(chart(
         "cost",
-        format!("What a bounce ray costs, {title}, with the exponent of growth"),
+        format!("What a bounce ray costs {title}, with the exponent of growth"),
         "ns a ray",
         cost,
     ));
     let series = with_exponents(lines(&|i| Some(i.build.clone())));
     charts.push(chart(
         "build",
-        format!("Building and uploading, {title}, with the exponent of growth"),
+        format!("Building and uploading {title}, with the exponent of growth"),
         "seconds",
         series,
     ));
@@ -240,10 +239,10 @@ fn rate_table(rooms: &[Measured]) -> Table {
 
 fn build_table(rooms: &[Measured]) -> Table {
     let row = |(room, i): (&Measured, &Intersector)| {
-        let host = match (i.host, i.backend) {
-            (Some(seconds), Backend::ComputeBvh) => format!("{} building the BVH", digits(seconds)),
-            (Some(seconds), _) => format!("{} sorting", digits(seconds)),
-            (None, _) => "all".into(),
+        let host = match i.backend {
+            Backend::ComputeBvh => format!("{} building the BVH", digits(i.host.median())),
+            Backend::RayQuery => format!("{} sorting", digits(i.host.median())),
+            Backend::Cpu => "all".into(),
         };
         let bytes = |scale: f64| i.bytes.map_or("-".into(), |bytes| digits(bytes as f64 / scale));
         vec![
