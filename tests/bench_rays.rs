@@ -181,6 +181,11 @@ fn rays_are_of_their_kind() {
             assert!((target.y + 1e-3).abs() < 1e-5 && shadow.t_max == 1.0);
             up += usize::from(shadow.direction.y > 0.0);
         }
+        // A ray that left its surface on the wrong side would meet it at once.
+        for kind in [Kind::Bounce, Kind::SecondBounce] {
+            let at_once = by(kind).1.iter().filter(|t| **t < 1e-4).count();
+            assert!(at_once * 100 < set.len(), "{at_once} of {} {} rays go nowhere", set.len(), kind.name());
+        }
         // The lamp shines down.
         assert_eq!(up, set.len());
         let lit = by(Kind::Shadow).1.iter().filter(|blocked| **blocked == 0.0).count() as f64 / set.len() as f64;

@@ -67,8 +67,8 @@ fn how(plan: &Plan, rooms: &[Measured]) -> Vec<String> {
             (all + rays * Kind::ALL.len(), off + i.mismatches.iter().sum::<usize>())
         });
         text.push(format!(
-            "Of {all} rays, {off} meet something else on {backend} than in the reference (another distance by 1e-4, or nothing); at more than \
-             1 in 1000 nothing would be timed."
+            "Rays that meet something else on {backend} than in the reference (a distance that differs by more than 1e-4, or nothing): {off} of \
+             {all}. At more than 1 in 1000 nothing would be timed."
         ));
     }
     text.extend(rooms.iter().flat_map(|room| room.left_out.iter().cloned()));
@@ -110,7 +110,7 @@ fn findings(rooms: &[Measured]) -> Vec<String> {
             words.collect::<Vec<_>>().join(", ")
         };
         text.push(format!(
-            "How many times as many rays a second compute BVH traces as ray query, by kind: {} at {} {thing}; {} at {}.",
+            "How many times as many rays a second compute BVH traces as ray query, by the number of {thing}: {} at {}; {} at {}.",
             of_kinds(first),
             small.count,
             of_kinds(last),
