@@ -1,4 +1,4 @@
-//! The structures that the host shares with the shaders (`shaders/scene.glsl`, `path_trace.comp`, `probe.comp`).
+//! The structures that the host shares with the shaders (`shaders/scene.glsl`, `path_trace.comp`, `probe.comp`, `trace_rays.comp`).
 //!
 //! [`STRUCTS`] lists every member's offset; a test compares it with the offsets in the shipped SPIR-V.
 
@@ -17,6 +17,7 @@ pub const STRUCTS: &[(&str, usize, &[Member])] = &[
     ("PixelSum", size_of::<PixelSum>(), PixelSum::MEMBERS),
     ("Dropped", size_of::<Dropped>(), Dropped::MEMBERS),
     ("Call", size_of::<Call>(), Call::MEMBERS),
+    ("Shots", size_of::<Shots>(), Shots::MEMBERS),
 ];
 
 macro_rules! shared {
@@ -200,5 +201,19 @@ shared! {
         function: u32,
         /// How many calls.
         count: u32,
+    }
+}
+
+shared! {
+    /// Push constants of the kernel that only traces rays.
+    Shots {
+        /// Index of the first ray.
+        first: u32,
+        /// How many.
+        count: u32,
+        /// 0: the closest hit; 1: whether anything is in the way.
+        any_hit: u32,
+        /// A number that no result is equal to.
+        never: f32,
     }
 }

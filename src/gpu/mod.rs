@@ -13,6 +13,7 @@ mod kernel;
 pub mod layout;
 pub mod model;
 pub mod probe;
+mod ray_tracer;
 mod scene;
 mod shader;
 mod tracer;
@@ -21,6 +22,7 @@ pub use buffer::{Buffer, TexelBuffer};
 pub use device::Device;
 pub use instance::{Instance, PhysicalDevice, validation_messages};
 pub use kernel::{Binding, Kernel};
+pub use ray_tracer::RayTracer;
 pub use shader::{SHADERS, Shader};
 pub use tracer::GpuTracer;
 

@@ -18,9 +18,15 @@ macro_rules! shader {
     };
 }
 
-/// The path tracer on the compute BVH and on ray queries, then the probe on both.
-pub const SHADERS: [Shader; 4] =
-    [shader!("path_trace_bvh"), shader!("path_trace_ray_query"), shader!("probe_bvh"), shader!("probe_ray_query")];
+/// The path tracer on the compute BVH and on ray queries, then the probe on both, then what only traces rays on both.
+pub const SHADERS: [Shader; 6] = [
+    shader!("path_trace_bvh"),
+    shader!("path_trace_ray_query"),
+    shader!("probe_bvh"),
+    shader!("probe_ray_query"),
+    shader!("trace_rays_bvh"),
+    shader!("trace_rays_ray_query"),
+];
 
 impl Shader {
     /// The path tracer.
@@ -31,6 +37,11 @@ impl Shader {
     /// The probe.
     pub(super) fn probe(ray_query: bool) -> &'static Shader {
         &SHADERS[2 + usize::from(ray_query)]
+    }
+
+    /// What only traces rays.
+    pub(super) fn trace_rays(ray_query: bool) -> &'static Shader {
+        &SHADERS[4 + usize::from(ray_query)]
     }
 
     /// The shipped SPIR-V words.

@@ -1,8 +1,8 @@
 //! The tracers that a measurement puts side by side.
 
 use crate::backend::{self, Backend};
-use crate::gpu::probe::Probe;
-use crate::gpu::{Device, GpuTracer, Instance};
+use crate::gpu::probe::{Call, Probe};
+use crate::gpu::{Device, GpuTracer, Instance, RayTracer};
 use crate::reference::Reference;
 use crate::render::Tracer;
 use crate::scene::Scene;
@@ -83,5 +83,20 @@ impl Workbench {
             return Err(Error::NoDevice("the reference needs no probe".into()));
         }
         Probe::new(self.device(backend)?, scene, backend == Backend::RayQuery)
+    }
+    /// Whether the device is the CPU, or there is none.
+    pub fn is_software(&self) -> bool {
+        self.compute_bvh.as_ref().is_none_or(|device| device.software)
+    }
+
+    /// An intersector by itself, with a scene and the rays that it is to trace (as [`crate::measure::rays::Ray::call`] has them).
+    ///
+    /// # Errors
+    /// If the backend is the CPU or not here, or scene or rays do not fit it.
+    pub fn ray_tracer(&self, scene: &Scene, backend: Backend, rays: &[Call]) -> Result<RayTracer> {
+        if backend == Backend::Cpu {
+            return Err(Error::NoDevice("the reference traces rays by itself".into()));
+        }
+        RayTracer::new(self.device(backend)?, scene, backend == Backend::RayQuery, rays)
     }
 }

@@ -5,12 +5,20 @@
 //! earlier run.
 
 mod baseline;
+pub mod break_even;
 mod contenders;
 mod curve;
+pub mod growth;
+pub mod intersectors;
+pub mod meshes;
 mod page;
 mod pareto;
+pub mod power_law;
 mod preparation;
+pub mod ray_kinds;
+pub mod ray_section;
 mod report;
+pub mod rounds;
 mod settings;
 mod trial;
 mod words;
@@ -43,7 +51,8 @@ pub struct Definition {
 }
 
 /// Every part, in the order of the page.
-pub const SECTIONS: &[Definition] = &[curve::DEFINITION, preparation::DEFINITION];
+pub const SECTIONS: &[Definition] =
+    &[curve::DEFINITION, preparation::DEFINITION, ray_section::DEFINITION, growth::DEFINITION];
 
 /// The parts of these names, in the order of the page; all of them for no name.
 ///

@@ -1,6 +1,7 @@
 //! One contender on one scene and backend: its renders, round by round.
 
 use super::contenders::Contender;
+use super::power_law::PowerLaw;
 use super::spread;
 use crate::Result;
 use crate::backend::Backend;
@@ -91,15 +92,8 @@ impl Trial {
 
     /// The exponent of relMSE over samples, fitted to the measured points; none for fewer than three.
     pub fn exponent(&self) -> Option<f64> {
-        let points: Vec<(f64, f64)> =
-            self.rungs.iter().map(|r| (f64::from(r.spp).ln(), r.error().0.ln())).filter(|p| p.1.is_finite()).collect();
-        if points.len() < 3 {
-            return None;
-        }
-        let n = points.len() as f64;
-        let (mx, my) = points.iter().fold((0.0, 0.0), |(a, b), (x, y)| (a + x / n, b + y / n));
-        let (xy, xx) = points.iter().fold((0.0, 0.0), |(a, b), (x, y)| (a + (x - mx) * (y - my), b + (x - mx).powi(2)));
-        Some(xy / xx)
+        let law = PowerLaw::fit(self.rungs.iter().map(|r| (f64::from(r.spp), r.error().0)))?;
+        law.error.map(|_| law.exponent)
     }
 
     /// Adds a round: the tracer is built anew with the scene's seed, used once, and then renders with more and more samples. The first round
