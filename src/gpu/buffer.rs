@@ -87,15 +87,6 @@ impl Buffer {
         Ok(buffer)
     }
 
-    /// A buffer that shaders read by structure; refused if it is beyond what the device can address in one piece
-    /// (some drivers drop what lies beyond without a word).
-    pub(crate) fn storage<T: Pod>(device: &Arc<Device>, name: &str, data: &[T]) -> Result<Self> {
-        let (needed, limit) = (size_of_val(data) as u64, u64::from(device.limits.max_storage_buffer_range));
-        let advice = "use fewer objects, materials or luminaires, another device, or --backend cpu";
-        device.check_limit(name, needed, limit, "bytes (maxStorageBufferRange)", advice)?;
-        Self::upload(device, name, data, vk::BufferUsageFlags::STORAGE_BUFFER)
-    }
-
     /// The bytes of a host-visible buffer.
     pub(crate) fn mapped(&self) -> Result<&[u8]> {
         let slice = self.allocation.as_ref().and_then(Allocation::mapped_slice);
