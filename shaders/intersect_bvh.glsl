@@ -16,6 +16,7 @@ struct TraversalRay {
     vec3 origin;
     vec3 inverse;      // 1 / direction, finite
     uint octant_inv4;  // order of the children, in each byte
+    vec3 direction;
     uint axis;         // largest component of the direction
     vec3 shear;
 };
@@ -26,6 +27,7 @@ vec3 permute(vec3 v, uint axis) { return axis == 0u ? v.yzx : (axis == 1u ? v.zx
 TraversalRay traversal_ray(vec3 origin, vec3 direction) {
     TraversalRay ray;
     ray.origin = origin;
+    ray.direction = direction;
     vec3 size = abs(direction);
     float largest = max(size.x, max(size.y, size.z));
     // A component of zero would give infinity times zero in the box test; the substitute bends the ray by 1e-18.
@@ -34,7 +36,8 @@ TraversalRay traversal_ray(vec3 origin, vec3 direction) {
     ray.octant_inv4 = (safe.x < 0.0 ? 0u : 0x04040404u) | (safe.y < 0.0 ? 0u : 0x02020202u) | (safe.z < 0.0 ? 0u : 0x01010101u);
     ray.axis = size.x == largest ? 0u : (size.y == largest ? 1u : 2u);
     vec3 d = permute(direction, ray.axis);
-    ray.shear = vec3(d.xy / d.z, 1.0 / d.z);
+    float z = 1.0 / d.z;
+    ray.shear = vec3(d.xy * z, z);
     return ray;
 }
 
@@ -58,6 +61,10 @@ uint intersect_node(TraversalRay ray, float t_max, uint node, out uvec2 bases, o
     if (ray.inverse.x < 0.0) nx = nx.zwxy;
     if (ray.inverse.y < 0.0) ny = ny.zwxy;
     if (ray.inverse.z < 0.0) nz = nz.zwxy;
+    // 1 + 4 * 2^-23 on the far side: rays of far-away origins round by their distance, not by the box (Ize 2013).
+    vec3 far_scale = scale * 1.0000005;
+    vec3 far_offset = offset * 1.0000005;
+    int last = floatBitsToInt(t_max);
     uint mask = 0u;
     for (uint half_index = 0u; half_index < 2u; half_index++) {
         bool second = half_index == 1u;
@@ -68,12 +75,12 @@ uint intersect_node(TraversalRay ray, float t_max, uint node, out uvec2 bases, o
         uint bit_index = (meta ^ (ray.octant_inv4 & ((inner >> 4u) * 0xffu))) & 0x1f1f1f1fu;
         uint bits = (meta >> 5u) & 0x07070707u;
         for (uint child = 0u; child < 4u; child++) {
-            vec3 t0 = vec3(byte_of(entry.x, child), byte_of(entry.y, child), byte_of(entry.z, child)) * scale + offset;
-            vec3 t1 = vec3(byte_of(leave.x, child), byte_of(leave.y, child), byte_of(leave.z, child)) * scale + offset;
-            float near = max(max(t0.x, t0.y), max(t0.z, 0.0));
-            float far = min(min(t1.x, t1.y), t1.z);
-            // 1 + 4 * 2^-23 on the far side: rays of far-away origins round by their distance, not by the box (Ize 2013).
-            if (near <= min(far * 1.0000005, t_max)) {
+            // As integers: what is not negative compares alike, what is negative is less than that, and there is no NaN to look for.
+            ivec3 t0 = floatBitsToInt(vec3(byte_of(entry.x, child), byte_of(entry.y, child), byte_of(entry.z, child)) * scale + offset);
+            ivec3 t1 = floatBitsToInt(vec3(byte_of(leave.x, child), byte_of(leave.y, child), byte_of(leave.z, child)) * far_scale + far_offset);
+            int near = max(max(t0.x, t0.y), max(t0.z, 0));
+            int far = min(min(t1.x, t1.y), min(t1.z, last));
+            if (near <= far) {
                 mask |= bitfieldExtract(bits, int(8u * child), 8) << bitfieldExtract(bit_index, int(8u * child), 8);
             }
         }
@@ -81,13 +88,20 @@ uint intersect_node(TraversalRay ray, float t_max, uint node, out uvec2 bases, o
     return mask;
 }
 
+int least(ivec3 v) { return min(min(v.x, v.y), v.z); }
+int most(ivec3 v) { return max(max(v.x, v.y), v.z); }
+// Of the absolute values, as integers.
+float largest_size(vec3 v) { return intBitsToFloat(most(floatBitsToInt(abs(v)))); }
+
 // Woop's test: an edge shared by two triangles gives the same numbers for both, so no ray slips through between them.
-bool intersect_triangle(TraversalRay ray, float t_max, uint triangle, out float t, out vec2 barycentric) {
+bool intersect_triangle(TraversalRay ray, float t_max, uint triangle, out float t, out vec3 weights) {
     int base = int(triangle) * 3;
     vec3 corner_a = uintBitsToFloat(texelFetch(triangles, base).xyz);
     vec3 corner_b = uintBitsToFloat(texelFetch(triangles, base + 1).xyz);
-    vec3 corner_c = uintBitsToFloat(texelFetch(triangles, base + 2).xyz);
-    vec3 a = permute(corner_a - ray.origin, ray.axis);
+    uvec4 last = texelFetch(triangles, base + 2);
+    vec3 corner_c = uintBitsToFloat(last.xyz);
+    vec3 from_a = corner_a - ray.origin;
+    vec3 a = permute(from_a, ray.axis);
     vec3 b = permute(corner_b - ray.origin, ray.axis);
     vec3 c = permute(corner_c - ray.origin, ray.axis);
     precise vec2 a2 = a.xy - ray.shear.xy * a.z;
@@ -100,19 +114,23 @@ bool intersect_triangle(TraversalRay ray, float t_max, uint triangle, out float 
     if ((u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0)) return false;
     float determinant = u + v + w;
     if (determinant == 0.0) return false;
-    float reciprocal = 1.0 / determinant;
-    float depth = (u * a.z + v * b.z + w * c.z) * reciprocal;
+    weights = vec3(v, w, determinant);
+    // Distances of the corners.
+    vec3 corners = vec3(a.z, b.z, c.z) * ray.shear.z;
     // Of a narrow triangle u, v and w are small differences of large products. Its plane is known better: by its short edges, as they are
     // before the origin is subtracted. A ray within that plane has no one distance to it, corners in one line have no plane; and no distance
     // lies outside the corners'.
-    vec3 n = permute(triangle_normal(corner_a, corner_b, corner_c), ray.axis);
-    float slope = dot(n, vec3(ray.shear.xy, 1.0));
-    bool has_plane = largest(abs(n)) > 1e-4 * shorter_edges(corner_a, corner_b, corner_c);
-    if (has_plane && abs(slope) > 1e-6 * largest(abs(n))) {
-        depth = clamp(dot(n, a) / slope, min(min(a.z, b.z), c.z), max(max(a.z, b.z), c.z));
-    }
-    t = depth * ray.shear.z;
-    barycentric = vec2(v, w) * reciprocal;
+    vec3 ab = corner_b - corner_a;
+    vec3 bc = corner_c - corner_b;
+    vec3 ca = corner_a - corner_c;
+    uint longest = last.w & 3u;
+    vec3 n = cross(longest == 0u ? bc : (longest == 1u ? ca : ab), longest == 0u ? ca : (longest == 1u ? ab : bc));
+    float slope = dot(n, ray.direction);
+    bool plane = last.w >= 4u && abs(slope) * abs(ray.shear.z) > 1e-6 * largest_size(n);
+    t = (plane ? dot(n, from_a) : dot(vec3(u, v, w), corners)) / (plane ? slope : determinant);
+    // As integers, as in intersect_node.
+    ivec3 distances = floatBitsToInt(corners);
+    t = intBitsToFloat(min(max(floatBitsToInt(t), least(distances)), most(distances)));
     return t > 0.0 && t < t_max;
 }
 
@@ -129,6 +147,7 @@ bool traverse(vec3 origin, vec3 direction, float t_max, uint salt, const bool an
     uvec2 leaves = uvec2(0u);
     hit.t = t_max;
     bool found = false;
+    float determinant = 1.0;
     // A ray that is no ray (NaN, infinite or zero direction) hits nothing.
     float size = dot(abs(direction), vec3(1.0));
     if (!(size > 0.0 && size < INFINITY)) return false;
@@ -156,18 +175,21 @@ bool traverse(vec3 origin, vec3 direction, float t_max, uint salt, const bool an
                 object = index;
                 object_depth = depth;
                 // Relative to the object's own origin: the numbers that round are no larger than need be.
-                vec4 to_object[3] = objects[object].world_to_object;
-                vec3 from = origin - translation(objects[object].object_to_world);
+                vec4 to_world[3], to_object[3];
+                object_to_world(object, to_world);
+                world_to_object(object, to_object);
+                vec3 from = origin - translation(to_world);
                 ray = traversal_ray(row_dot(to_object, from), row_dot(to_object, direction));
-                inner = uvec2(objects[object].root_node, 0x80000000u);
+                inner = uvec2(object_place(object).root_node, 0x80000000u);
                 leaves.y = 0u;
             } else {
                 float t;
-                vec2 barycentric;
-                if (intersect_triangle(ray, hit.t, index, t, barycentric) && (!HOLES || covers(salt, object, index, barycentric))) {
+                vec3 w;
+                if (intersect_triangle(ray, hit.t, index, t, w) && (!HOLES || covers(salt, object, index, w.xy / w.z))) {
                     found = true;
                     if (any_hit) return true;
-                    hit = Hit(t, object, index, barycentric);
+                    hit = Hit(t, object, index, w.xy);
+                    determinant = w.z;
                 }
             }
         }
@@ -182,6 +204,7 @@ bool traverse(vec3 origin, vec3 direction, float t_max, uint salt, const bool an
             else leaves = top;
         }
     }
+    hit.barycentric /= determinant;
     return found;
 }
 

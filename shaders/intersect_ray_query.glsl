@@ -9,7 +9,7 @@ const uint RAY_FLAGS = HOLES ? gl_RayFlagsNoneEXT : gl_RayFlagsOpaqueEXT;
 #define OBJECT_OF(query, committed) (INSTANCES ? uint(rayQueryGetIntersectionInstanceCustomIndexEXT(query, committed)) : 0u)
 #define TRIANGLE_OF(query, committed) \
     (uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, committed)) \
-     + (INSTANCES ? objects[rayQueryGetIntersectionInstanceCustomIndexEXT(query, committed)].triangle_offset : 0u))
+     + (INSTANCES ? object_place(uint(rayQueryGetIntersectionInstanceCustomIndexEXT(query, committed))).triangle_offset : 0u))
 
 // Traverses to the end; stops at a candidate by the rule of `covers`.
 #define PROCEED(query, salt) \

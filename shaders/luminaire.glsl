@@ -5,7 +5,9 @@
 uint choose_luminaire(uint random) {
     uint slot, fraction;
     umulExtended(random, frame.luminaire_count, slot, fraction);
-    return fraction < luminaires[slot].threshold ? slot : luminaires[slot].alias_index;
+    // Kind, threshold, alias, triangle.
+    uvec4 choice = texelFetch(luminaires, int(slot) * 7 + 5);
+    return fraction < choice.y ? slot : choice.z;
 }
 
 // The power heuristic's weight of a density next to another one (Veach and Guibas 1995).
@@ -34,7 +36,8 @@ float triangle_density(vec3 p, vec3 wi, Hit hit, float area_density) {
     vec3 b = uintBitsToFloat(texelFetch(triangles, base + 1).xyz);
     vec3 c = uintBitsToFloat(texelFetch(triangles, base + 2).xyz);
     if (INSTANCES) {
-        vec4 to_world[3] = objects[hit.object].object_to_world;
+        vec4 to_world[3];
+        object_to_world(hit.object, to_world);
         a = row_dot(to_world, a) + translation(to_world);
         b = row_dot(to_world, b) + translation(to_world);
         c = row_dot(to_world, c) + translation(to_world);
@@ -62,7 +65,7 @@ float emission_weight(float pdf, float density) {
 // it takes no impulse there. Adds the shadow ray to `rays` (all, shadow).
 vec3 direct_light(Surfel s, Material material, vec3 wo, vec3 throughput, uvec4 random, float rest, uint salt, inout uvec2 rays) {
     if (frame.luminaire_count == 0u) return vec3(0.0);
-    Luminaire light = luminaires[choose_luminaire(random.z)];
+    Luminaire light = load_luminaire(choose_luminaire(random.z));
     // With one kind of luminaire in the scene these are constants.
     bool several = int(POINT_LUMINAIRES) + int(INFINITE_LUMINAIRES) + int(AREA_LUMINAIRES) + int(ENVIRONMENT) > 1;
     bool infinite = INFINITE_LUMINAIRES && (!several || light.kind == INFINITE);
@@ -123,8 +126,9 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, vec3 throughput, uvec4 r
     }
 
     if (area && (TEXTURES || HOLES)) {
-        uint emission_map = materials[light.material].maps.w;
-        bool partly = HOLES && (materials[light.material].transmission.w < 1.0 || materials[light.material].opacity_map != NONE);
+        Material lamp = load_material(light.material);
+        uint emission_map = lamp.maps.w;
+        bool partly = HOLES && (lamp.transmission.w < 1.0 || lamp.opacity_map != NONE);
         if (emission_map != NONE || partly) {
             // Where on the triangle the target lies, by areas.
             vec3 ab = light.b.xyz - light.a.xyz;

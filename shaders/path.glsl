@@ -97,7 +97,8 @@ bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uve
     }
     if (EXTINCTION == EXTINCTION_THROUGHPUT) {
         if (DIELECTRICS) path.eta_scale *= next.eta2;
-        float alive = min(largest(path.throughput) * (DIELECTRICS ? path.eta_scale : 1.0), MAX_SURVIVAL);
+        float left = largest(path.throughput) * (DIELECTRICS ? path.eta_scale : 1.0);
+        float alive = min(left / SURE_THROUGHPUT, MAX_SURVIVAL);
         if (!(uniform1(random.w) < alive)) return false;
         reweighted = alive;
         path.throughput /= alive;

@@ -55,7 +55,7 @@ void write_hit(uint id, bool found, Hit hit) {
         return;
     }
     uint original = texelFetch(triangles, int(hit.triangle) * 3 + 1).w;
-    results[2u * id] = uvec4(floatBitsToUint(hit.t), objects[hit.object].scene_index, original, 0u);
+    results[2u * id] = uvec4(floatBitsToUint(hit.t), object_place(hit.object).scene_index, original, 0u);
     results[2u * id + 1u] = uvec4(floatBitsToUint(hit.barycentric), 0u, 0u);
 }
 
@@ -95,8 +95,9 @@ void main() {
     case BSDF: {
         Surfel s = upward(x.w);
         vec3 wo = uintBitsToFloat(x.xyz);
-        vec4 f = bsdf_and_pdf(s, materials[x.w], wo, uintBitsToFloat(y.xyz));
-        f.w *= 1.0 - impulses(s, materials[x.w], wo).probability;
+        Material material = load_material(x.w);
+        vec4 f = bsdf_and_pdf(s, material, wo, uintBitsToFloat(y.xyz));
+        f.w *= 1.0 - impulses(s, material, wo).probability;
         result = floatBitsToUint(f);
         break;
     }
@@ -109,14 +110,14 @@ void main() {
     case SCATTER: {
         Surfel s = upward(x.w);
         vec3 wo = uintBitsToFloat(x.xyz);
-        Material material = materials[x.w];
+        Material material = load_material(x.w);
         Scattering next = scatter(s, material, impulses(s, material, wo), wo, y);
         results[2u * id] = floatBitsToUint(vec4(next.wi, next.pdf));
         results[2u * id + 1u] = floatBitsToUint(vec4(next.weight, next.eta2));
         return;
     }
     case SPHERICAL_TRIANGLE: {
-        Luminaire light = luminaires[x.w];
+        Luminaire light = load_luminaire(x.w);
         vec3 v[3];
         float omega;
         if (is_near(uintBitsToFloat(x.xyz), light.a.xyz, light.b.xyz, light.c.xyz, light.b.w, v, omega)) {

@@ -3,6 +3,8 @@
 
 // No surface lets every path live, so that every path ends.
 const float MAX_SURVIVAL = 0.9999;
+// Russian roulette leaves paths of at least this throughput alone (src/reference/scatter.rs).
+const float SURE_THROUGHPUT = 0.4;
 
 // The probability that the glossy lobe chooses a direction that no impulse chose.
 float glossy_share(Material material) {
@@ -58,7 +60,7 @@ float survival(Material material) {
 // throughput so far, without eta^2, times f cos.
 float surviving(float pdf, vec3 scattered, Material material) {
     if (EXTINCTION == EXTINCTION_SURFACE) return pdf * survival(material);
-    if (EXTINCTION == EXTINCTION_THROUGHPUT) return min(largest(scattered), MAX_SURVIVAL * pdf);
+    if (EXTINCTION == EXTINCTION_THROUGHPUT) return min(largest(scattered) / SURE_THROUGHPUT, MAX_SURVIVAL * pdf);
     return pdf;
 }
 

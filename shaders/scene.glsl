@@ -59,15 +59,9 @@ layout(set = 0, binding = 2) uniform usamplerBuffer triangles;
 // Vertex normals, three texels a triangle, where VERTEX_NORMALS.
 layout(set = 0, binding = 3) uniform usamplerBuffer normals;
 
-struct Object {
-    vec4 object_to_world[3];   // rows
-    vec4 world_to_object[3];   // rows
-    uint root_node;            // of the mesh's BVH
-    uint triangle_offset;      // of the mesh's first triangle
-    uint material;             // replaces the triangles' own, unless NONE
-    uint scene_index;          // in Scene::objects
-};
-layout(set = 0, binding = 4, std430) readonly buffer Objects { Object objects[]; };
+// Objects, seven texels each: three rows to world space, three rows back, and `ObjectPlace`. Texels, because software devices read them
+// several times faster than storage buffers.
+layout(set = 0, binding = 4) uniform usamplerBuffer objects;
 
 struct Material {
     vec4 ambient;         // rgb; w: N(m), the normalisation of the glossy lobe
@@ -79,9 +73,9 @@ struct Material {
     uvec4 maps;           // textures that multiply ambient, lambert, glossy and emission, or NONE
     uint opacity_map;     // its alpha multiplies the opacity
     uint one_sided;       // 1 if only the outward side emits
-    uint padding[2];
 };
-layout(set = 0, binding = 5, std430) readonly buffer Materials { Material materials[]; };
+// Eight texels each.
+layout(set = 0, binding = 5) uniform usamplerBuffer materials;
 
 const uint POINT = 0u;
 const uint INFINITE = 1u;
@@ -95,13 +89,11 @@ struct Luminaire {
     vec4 normal;       // area: unit outward normal; w: 1 if only that side emits
     vec4 radiance;     // intensity, irradiance or radiance (without its texture); w: probability of being chosen
     uint kind;
-    uint threshold;    // alias table
-    uint alias_index;
     uint triangle;     // area: index into `triangles`
     uint material;     // area
-    uint padding[3];
 };
-layout(set = 0, binding = 6, std430) readonly buffer Luminaires { Luminaire luminaires[]; };
+// Seven texels each.
+layout(set = 0, binding = 6) uniform usamplerBuffer luminaires;
 
 // Texture coordinates, two texels a triangle: those of the first two corners, then the third's.
 layout(set = 0, binding = 9) uniform usamplerBuffer uvs;
@@ -118,3 +110,43 @@ const uint NONE = 0xffffffffu;
 
 vec3 row_dot(vec4 m[3], vec3 v) { return vec3(dot(m[0].xyz, v), dot(m[1].xyz, v), dot(m[2].xyz, v)); }
 vec3 translation(vec4 m[3]) { return vec3(m[0].w, m[1].w, m[2].w); }
+
+// The rest of an object.
+struct ObjectPlace {
+    uint root_node;            // of the mesh's BVH
+    uint triangle_offset;      // of the mesh's first triangle
+    uint material;             // replaces the triangles' own, unless NONE
+    uint scene_index;          // in Scene::objects
+};
+
+ObjectPlace object_place(uint object) {
+    uvec4 t = texelFetch(objects, int(object) * 7 + 6);
+    return ObjectPlace(t.x, t.y, t.z, t.w);
+}
+
+// Rows of the map to world space, and of its inverse.
+void object_to_world(uint object, out vec4 rows[3]) {
+    for (int i = 0; i < 3; i++) rows[i] = uintBitsToFloat(texelFetch(objects, int(object) * 7 + i));
+}
+void world_to_object(uint object, out vec4 rows[3]) {
+    for (int i = 0; i < 3; i++) rows[i] = uintBitsToFloat(texelFetch(objects, int(object) * 7 + 3 + i));
+}
+
+Material load_material(uint index) {
+    int base = int(index) * 8;
+    uvec4 last = texelFetch(materials, base + 7);
+    return Material(
+        uintBitsToFloat(texelFetch(materials, base)), uintBitsToFloat(texelFetch(materials, base + 1)),
+        uintBitsToFloat(texelFetch(materials, base + 2)), uintBitsToFloat(texelFetch(materials, base + 3)),
+        uintBitsToFloat(texelFetch(materials, base + 4)), uintBitsToFloat(texelFetch(materials, base + 5)),
+        texelFetch(materials, base + 6), last.x, last.y);
+}
+
+Luminaire load_luminaire(uint index) {
+    int base = int(index) * 7;
+    uvec4 choice = texelFetch(luminaires, base + 5);
+    return Luminaire(
+        uintBitsToFloat(texelFetch(luminaires, base)), uintBitsToFloat(texelFetch(luminaires, base + 1)),
+        uintBitsToFloat(texelFetch(luminaires, base + 2)), uintBitsToFloat(texelFetch(luminaires, base + 3)),
+        uintBitsToFloat(texelFetch(luminaires, base + 4)), choice.x, choice.w, texelFetch(luminaires, base + 6).x);
+}

@@ -58,8 +58,9 @@ Surfel surfel(Hit hit, vec3 wo) {
     }
 
     if (INSTANCES) {
-        vec4 to_world[3] = objects[hit.object].object_to_world;
-        vec4 to_object[3] = objects[hit.object].world_to_object;
+        vec4 to_world[3], to_object[3];
+        object_to_world(hit.object, to_world);
+        world_to_object(hit.object, to_object);
         vec3 p = s.position;
         s.position = row_dot(to_world, p) + translation(to_world);
         // Rounding of the transform back into the object's space, when a ray leaves from here.
@@ -77,7 +78,7 @@ Surfel surfel(Hit hit, vec3 wo) {
         s.position_error = across / dot(scaled, scaled) * abs(scaled)
             + gamma(4.0) * (row_abs_dot(to_world, abs(p)) + abs(translation(to_world)));
         if (VERTEX_NORMALS) n = normal_to_world(to_object, n);
-        uint material = objects[hit.object].material;
+        uint material = object_place(hit.object).material;
         if (material != NONE) s.material = material;
     }
 
@@ -99,7 +100,7 @@ Surfel surfel(Hit hit, vec3 wo) {
 
 // The material with its textures.
 Material material_at(Surfel s) {
-    Material material = materials[s.material];
+    Material material = load_material(s.material);
     if (TEXTURES) {
         if (SIMPLE && material.maps.x != NONE) material.ambient.rgb *= texture_at(material.maps.x, s.uv).rgb;
         if (material.maps.y != NONE) material.lambert.rgb *= texture_at(material.maps.y, s.uv).rgb;

@@ -41,17 +41,19 @@ vec4 texture_at(uint map, vec2 uv) {
 
 // The share of light that meets a point of a triangle at all.
 float opacity_at(uint material, uint triangle, vec2 barycentric) {
-    float opacity = materials[material].transmission.w;
-    uint map = materials[material].opacity_map;
+    Material m = load_material(material);
+    float opacity = m.transmission.w;
+    uint map = m.opacity_map;
     if (map != NONE) opacity *= texture_at(map, uv_at(triangle, barycentric)).a;
     return opacity;
 }
 
 // Whether a ray stops at a hit, by chance where the surface is partly transparent.
 bool covers(uint salt, uint object, uint triangle, vec2 barycentric) {
-    uint material = INSTANCES ? objects[object].material : NONE;
+    uint material = INSTANCES ? object_place(object).material : NONE;
     if (material == NONE) material = texelFetch(triangles, int(3u * triangle)).w;
-    if (materials[material].transmission.w >= 1.0 && materials[material].opacity_map == NONE) return true;
+    Material m = load_material(material);
+    if (m.transmission.w >= 1.0 && m.opacity_map == NONE) return true;
     uint original = texelFetch(triangles, int(3u * triangle + 1u)).w;
-    return uniform1(coverage(salt, objects[object].scene_index, original)) < opacity_at(material, triangle, barycentric);
+    return uniform1(coverage(salt, object_place(object).scene_index, original)) < opacity_at(material, triangle, barycentric);
 }

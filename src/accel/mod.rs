@@ -7,7 +7,7 @@ mod ray_query;
 use crate::bvh::{MeshBvh, STACK_SIZE, TwoLevelBvh, spatial_order};
 use crate::gpu::layout::Object;
 use crate::gpu::model::KernelModel;
-use crate::gpu::{Binding, Buffer, Device, TexelBuffer};
+use crate::gpu::{Binding, Device, TexelBuffer};
 use crate::scene::{Scene, widen};
 use crate::{Error, Result};
 use ash::vk;
@@ -20,7 +20,7 @@ pub struct Geometry {
     triangles: TexelBuffer,
     normals: TexelBuffer,
     uvs: TexelBuffer,
-    objects: Buffer,
+    objects: TexelBuffer,
 }
 
 /// What binding 1 holds.
@@ -125,9 +125,10 @@ impl Geometry {
         for (mesh, place) in scene.meshes.iter().zip(meshes) {
             for &index in &place.order {
                 let triangle = mesh.triangles[index as usize];
-                let extra = [triangle.material, index, 0];
+                let corners = triangle.vertices.map(|v| mesh.positions[v as usize]);
+                let extra = [triangle.material, index, shape(corners)];
                 for (corner, vertex) in triangle.vertices.into_iter().enumerate() {
-                    triangles.push(texel(mesh.positions[vertex as usize], extra[corner]));
+                    triangles.push(texel(corners[corner], extra[corner]));
                     if vertex_normals {
                         normals.push(texel(mesh.normals.get(vertex as usize).copied().unwrap_or(Vec3::ZERO), 0));
                     }
@@ -160,7 +161,13 @@ impl Geometry {
         let normals = TexelBuffer::new(device, "normals", &normals, vk::BufferUsageFlags::empty())?;
         let uvs = TexelBuffer::new(device, "texture coordinates", &uvs, vk::BufferUsageFlags::empty())?;
         let intersector = intersector(&triangles, &objects)?;
-        Ok(Geometry { intersector, triangles, normals, uvs, objects: Buffer::storage(device, "objects", &objects)? })
+        Ok(Geometry {
+            intersector,
+            triangles,
+            normals,
+            uvs,
+            objects: TexelBuffer::new(device, "objects", &objects, vk::BufferUsageFlags::empty())?,
+        })
     }
 
     /// Bindings 1 to 4 and 9.
@@ -173,7 +180,7 @@ impl Geometry {
             intersector,
             Binding::Texel(&self.triangles),
             Binding::Texel(&self.normals),
-            Binding::Storage(&self.objects),
+            Binding::Texel(&self.objects),
             Binding::Texel(&self.uvs),
         ]
     }
@@ -183,4 +190,16 @@ impl Geometry {
 fn rows(map: DAffine3) -> [[f32; 4]; 3] {
     let m = map.matrix3;
     [0, 1, 2].map(|r| [m.x_axis[r], m.y_axis[r], m.z_axis[r], map.translation[r]].map(|x| x as f32))
+}
+
+/// What the kernel's distance along a ray needs to know of a triangle: which edge is the longest (0: from the first corner to the second, 1: to
+/// the third, 2: back), and 4 if the other two edges say what plane it lies in.
+fn shape([a, b, c]: [Vec3; 3]) -> u32 {
+    let edges = [b - a, c - b, a - c];
+    let lengths = edges.map(|edge| edge.abs().max_element());
+    let longest = (0..3).rev().max_by(|i, j| lengths[*i].total_cmp(&lengths[*j])).unwrap_or(0);
+    let (next, last) = ((longest + 1) % 3, (longest + 2) % 3);
+    let normal = edges[next].cross(edges[last]);
+    let plane = normal.abs().max_element() > 1e-4 * lengths[next] * lengths[last];
+    longest as u32 + 4 * u32::from(plane)
 }

@@ -91,7 +91,7 @@ impl Buffer {
     /// (some drivers drop what lies beyond without a word).
     pub(crate) fn storage<T: Pod>(device: &Arc<Device>, name: &str, data: &[T]) -> Result<Self> {
         let (needed, limit) = (size_of_val(data) as u64, u64::from(device.limits.max_storage_buffer_range));
-        let advice = "use fewer objects, materials or luminaires, another device, or --backend cpu";
+        let advice = "use less at once, another device, or --backend cpu";
         device.check_limit(name, needed, limit, "bytes (maxStorageBufferRange)", advice)?;
         Self::upload(device, name, data, vk::BufferUsageFlags::STORAGE_BUFFER)
     }

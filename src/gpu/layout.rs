@@ -10,9 +10,6 @@ pub type Member = (&'static str, usize);
 /// GLSL name, size and members of every shared structure.
 pub const STRUCTS: &[(&str, usize, &[Member])] = &[
     ("Frame", size_of::<Frame>(), Frame::MEMBERS),
-    ("Object", size_of::<Object>(), Object::MEMBERS),
-    ("Material", size_of::<Material>(), Material::MEMBERS),
-    ("Luminaire", size_of::<Luminaire>(), Luminaire::MEMBERS),
     ("Batch", size_of::<Batch>(), Batch::MEMBERS),
     ("PixelSum", size_of::<PixelSum>(), PixelSum::MEMBERS),
     ("Dropped", size_of::<Dropped>(), Dropped::MEMBERS),
@@ -77,7 +74,7 @@ shared! {
 }
 
 shared! {
-    /// An instance (binding 4).
+    /// An instance (binding 4): seven texels, which `object_place` and its neighbours in `scene.glsl` read.
     Object {
         /// Rows of the map to world space.
         object_to_world: [[f32; 4]; 3],
@@ -95,7 +92,7 @@ shared! {
 }
 
 shared! {
-    /// A material (binding 5).
+    /// A material (binding 5): eight texels, which `load_material` reads.
     Material {
         /// Ambient albedo; w: normalisation of the glossy lobe.
         ambient: [f32; 4],
@@ -121,7 +118,7 @@ shared! {
 }
 
 shared! {
-    /// An entry of the luminaire table (binding 6).
+    /// An entry of the luminaire table (binding 6): seven texels, which `load_luminaire` reads.
     Luminaire {
         /// Position, direction towards the light, or first corner.
         a: [f32; 4],

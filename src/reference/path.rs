@@ -3,7 +3,7 @@
 use super::Reference;
 use super::intersect::Hit;
 use super::luminaire::emission_weight;
-use super::scatter::{MAX_SURVIVAL, scatter, survival};
+use super::scatter::{MAX_SURVIVAL, SURE_THROUGHPUT, scatter, survival};
 use crate::film::Rays;
 use crate::sampling::{light_block, ray_salt, scatter_block, uniform};
 use crate::scene::{Extinction, Integrator, LightSampling};
@@ -126,7 +126,7 @@ impl Reference {
             }
             // Russian roulette by what is left of the whole path.
             if estimator.extinction == Extinction::Throughput {
-                let alive = (throughput * eta_scale).max_element().min(MAX_SURVIVAL);
+                let alive = ((throughput * eta_scale).max_element() / SURE_THROUGHPUT).min(MAX_SURVIVAL);
                 if random[3] >= alive {
                     break;
                 }

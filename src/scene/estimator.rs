@@ -93,7 +93,8 @@ pub enum Extinction {
     Literal,
     /// By the surface's extinction coefficient, re-weighted.
     Surface,
-    /// By the throughput of the whole path, re-weighted (Russian roulette). The factor `eta^2` of transmission is left out.
+    /// By the throughput of the whole path, re-weighted (Russian roulette), once that is below 0.4. The factor `eta^2` of transmission is
+    /// left out.
     Throughput,
 }
 

@@ -8,7 +8,7 @@ use crate::Result;
 use crate::backend::Backend;
 use crate::measure::Workbench;
 use crate::measure::chart::{Axis, Chart, Point, Series};
-use crate::reference::scatter::MAX_SURVIVAL;
+use crate::reference::scatter::{MAX_SURVIVAL, SURE_THROUGHPUT};
 use crate::scene::{Estimator, Extinction};
 
 /// The sweep over the albedo of a closed room.
@@ -70,7 +70,8 @@ fn terminations() -> [Termination; 5] {
         Termination {
             name: "roulette by throughput",
             estimator: roulette(Extinction::Throughput),
-            rays: until_absorbed,
+            // It begins where the throughput has fallen so far.
+            rays: |absorbed| (1.0 - SURE_THROUGHPUT.ln()) / absorbed,
         },
         Termination { name: "roulette by surface", estimator: roulette(Extinction::Surface), rays: until_absorbed },
         Termination { name: "literal extinction", estimator: roulette(Extinction::Literal), rays: until_absorbed },
@@ -235,7 +236,7 @@ fn findings(all: &[(Backend, Vec<Vec<Measured>>)], beyond: &[Measured]) -> Findi
             from(0),
         ),
         how: format!(
-            "A path in a closed room has 1 / (1 - albedo) surfaces in the mean. A limit of k bounces leaves 1 - a^(k+2) of the light; \
+            "In a closed room light meets 1 / (1 - albedo) surfaces in the mean. A limit of k bounces leaves 1 - a^(k+2) of the light; \
              literal \
              extinction counts every loss twice and leaves 1 / (1 + a); a threshold t leaves 1 - t, but its paths are {} rays long at \
              albedo \
