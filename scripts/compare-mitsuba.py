@@ -5,6 +5,7 @@
   for s in $(seq 16); do luminaire render scene.toml --spp 128 --seed $s -o ours-$s.exr; done
   compare-mitsuba.py render scene.xml theirs --seeds 16 --spp 128      writes theirs-1.npy, theirs-2.npy, ...
   compare-mitsuba.py test --ours ours-*.exr --theirs theirs-*.npy      exit code 1 if they differ
+  compare-mitsuba.py race scene.toml scene.xml reference.npy           error times time of both, in turn
 
 The scatter over the seeds says how well each mean is known, so that no tolerance has to be chosen: the picture falls into blocks, and Welch's t-test
 says for each block and channel how often two right renderers would be as far apart. Then three questions are asked of all blocks together:
@@ -20,15 +21,26 @@ Welch's t.
 Take 16 seeds or more on each side: with fewer, a block none of whose seeds has met its rare bright paths looks surer than it is. The camera, the
 pixel filter (Mitsuba: <rfilter type="box"/>), the number of bounces (max_depth -1) and which sides of a lamp shine (Mitsuba: one; luminaire:
 `one_sided = true`) have to be the same in both scenes.
+
+A race renders in turn, several times, each time with another seed. What counts is relMSE (the mean of (a - b)^2 / (b^2 + 0.01) over pixels and
+channels) times the seconds for rendering alone: half of it is twice as fast. Loading, building and the first use of a kernel are left out on both sides.
 """
 
 import argparse
+import json
+import subprocess
 import sys
+import tempfile
+import time
 from pathlib import Path
 
 import mitsuba
 import numpy as np
-from scipy import stats
+
+try:
+    from scipy import stats
+except ImportError:  # a race goes without
+    stats = None
 
 SIGNIFICANCE = 1e-4
 # Relative difference of two means that rounding in single precision may explain.
@@ -129,6 +141,8 @@ def render(arguments):
 
 def test(arguments):
     """Compares two sets of pictures."""
+    if stats is None:
+        sys.exit("scipy is missing: pip install scipy")
     # For its reader of EXR files.
     mitsuba.set_variant("scalar_rgb")
     ours, theirs = (block_means(paths, arguments.block) for paths in (arguments.ours, arguments.theirs))
@@ -137,6 +151,55 @@ def test(arguments):
     p = judge(ours, theirs)
     print(f"they {'differ' if p < SIGNIFICANCE else 'do not differ'} (p = {p:.3g}; they do below {SIGNIFICANCE})")
     return 1 if p < SIGNIFICANCE else 0
+
+
+def rel_mse(picture, reference):
+    return float(((picture - reference) ** 2 / (reference**2 + 0.01)).mean())
+
+
+def race(arguments):
+    """Renders in turn and prints relMSE times seconds of both, and the ratios."""
+    mitsuba.set_variant(arguments.variant)
+    import drjit  # known only after a variant is set
+
+    reference = load(arguments.reference)
+    height, width = reference.shape[:2]
+    folder = Path(tempfile.mkdtemp())
+    picture, figures = folder / "ours.exr", folder / "ours.json"
+    theirs = mitsuba.load_file(str(arguments.theirs))
+
+    def ours_run(seed, spp):
+        command = [arguments.luminaire, "render", str(arguments.ours), "--spp", str(spp), "--seed", str(seed), "--width", str(width),
+                   "--height", str(height), "-o", str(picture), "--stats", str(figures), "--quiet", *arguments.option]  # fmt: skip
+        subprocess.run(command, check=True)
+        stats = json.loads(figures.read_text())
+        return load(picture), stats["seconds"]["render"], stats["rays"] / stats["seconds"]["render"] * 1e-6
+
+    def theirs_run(seed, spp):
+        start = time.perf_counter()
+        image = mitsuba.render(theirs, spp=spp, seed=seed)
+        drjit.eval(image)
+        drjit.sync_thread()
+        seconds = time.perf_counter() - start
+        return np.array(image)[..., :3].astype(float), seconds
+
+    # Compiles kernels on both sides.
+    ours_run(0, 4), theirs_run(0, 4)
+    print(f"{width} x {height}, {arguments.spp} samples a pixel; luminaire {' '.join(arguments.option)}, Mitsuba {mitsuba.__version__} {arguments.variant}")
+    print("round   ours: relMSE  seconds  product  Mrays/s    theirs: relMSE  seconds  product    theirs / ours")
+    products = []
+    for seed in range(1, arguments.rounds + 1):
+        image, seconds, rate = ours_run(seed, arguments.spp)
+        their_image, their_seconds = theirs_run(seed, arguments.spp)
+        ours, their = rel_mse(image, reference), rel_mse(their_image, reference)
+        products.append((ours * seconds, their * their_seconds))
+        a, b = products[-1]
+        print(f"{seed:5}   {ours:12.6f} {seconds:8.3f} {a:8.5f} {rate:8.2f}    {their:14.6f} {their_seconds:8.3f} {b:8.5f} {b / a:16.2f}")
+    a, b = (np.array(side) for side in zip(*products))
+    ratios = b / a
+    for name, values in [("ours", a), ("theirs", b), ("theirs / ours", ratios)]:
+        print(f"{name:14} median {np.median(values):.5f}   {values.min():.5f} to {values.max():.5f}")
+    return 0
 
 
 def main():
@@ -154,6 +217,16 @@ def main():
     command.add_argument("--theirs", nargs="+", type=Path, required=True, help="the same of the other renderer")
     command.add_argument("--block", type=int, default=16, help="side of a block in pixels (default 16)")
     command.set_defaults(run=test)
+    command = commands.add_parser("race", help="error times time of both, in turn")
+    command.add_argument("ours", type=Path, help="luminaire's scene")
+    command.add_argument("theirs", type=Path, help="the same for Mitsuba (.xml)")
+    command.add_argument("reference", type=Path, help="what it really looks like (.npy or .exr)")
+    command.add_argument("--rounds", type=int, default=5)
+    command.add_argument("--spp", type=int, default=64, help="samples a pixel, on both sides")
+    command.add_argument("--variant", default="llvm_ad_rgb", help="of Mitsuba: llvm_ad_rgb, cuda_ad_rgb, scalar_rgb")
+    command.add_argument("--luminaire", default="target/release/luminaire", help="the program")
+    command.add_argument("--option", action="append", default=[], help="for luminaire, such as --option=--backend=ray-query")
+    command.set_defaults(run=race)
     arguments = parser.parse_args()
     try:
         sys.exit(arguments.run(arguments))

@@ -20,6 +20,7 @@ pack() {
     cp target/release/luminaire target/release/examples/accuracy $pack
     cp -r scenes $pack
     cp "$0" $pack/run.sh
+    cp scripts/gpu-bench.sh scripts/compare-mitsuba.py $pack
     strip $pack/gpu-tests $pack/luminaire $pack/accuracy 2>/dev/null || true
     du -sh $pack
 }
@@ -33,7 +34,7 @@ check() {
     ./gpu-tests --nocapture 2>&1 | tee "$out/tests.txt" | grep -E '^(test |SKIP|test result)'
     ./luminaire render scenes/cornell/cornell.toml -o "$out/cornell.png" --spp 1024 --stats "$out/cornell.json"
     ./accuracy --out "$out/accuracy.md"
-    ./luminaire bench --out "$out/bench" --page "$out/bench.md"
+    ./gpu-bench.sh "$out/bench"
 }
 
 case "${1:-}" in

@@ -66,6 +66,6 @@ mod tests {
         assert_eq!(BreakEven::of(cost(2.0, 0.25), cost(1.0, 0.5)), BreakEven::FirstFrom(4.0));
         assert_eq!(BreakEven::of(cost(2.0, f64::NAN), cost(1.0, 0.5)), BreakEven::Unknown);
         let words = BreakEven::of(cost(1.0, 1e-6), cost(2.0, 0.5e-6)).words("one", "other");
-        assert_eq!(words, "other from 2.0e6 rays on");
+        assert_eq!(words, "other from 2.00e6 rays on");
     }
 }
