@@ -6,7 +6,7 @@ uint choose_luminaire(uint random) {
     uint slot, fraction;
     umulExtended(random, frame.luminaire_count, slot, fraction);
     // Kind, threshold, alias, triangle.
-    uvec4 choice = texelFetch(luminaires, int(slot) * 7 + 5);
+    uvec4 choice = texelFetch(luminaires, int(slot) * LUMINAIRE_TEXELS + 5);
     return fraction < choice.y ? slot : choice.z;
 }
 

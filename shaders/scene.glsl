@@ -108,6 +108,11 @@ layout(set = 0, binding = 13) uniform usamplerBuffer environment_slots;
 
 const uint NONE = 0xffffffffu;
 
+// Sizes of the structures that are read as texels.
+const int OBJECT_TEXELS = 7;
+const int MATERIAL_TEXELS = 8;
+const int LUMINAIRE_TEXELS = 7;
+
 vec3 row_dot(vec4 m[3], vec3 v) { return vec3(dot(m[0].xyz, v), dot(m[1].xyz, v), dot(m[2].xyz, v)); }
 vec3 translation(vec4 m[3]) { return vec3(m[0].w, m[1].w, m[2].w); }
 
@@ -120,20 +125,20 @@ struct ObjectPlace {
 };
 
 ObjectPlace object_place(uint object) {
-    uvec4 t = texelFetch(objects, int(object) * 7 + 6);
+    uvec4 t = texelFetch(objects, int(object) * OBJECT_TEXELS + 6);
     return ObjectPlace(t.x, t.y, t.z, t.w);
 }
 
 // Rows of the map to world space, and of its inverse.
 void object_to_world(uint object, out vec4 rows[3]) {
-    for (int i = 0; i < 3; i++) rows[i] = uintBitsToFloat(texelFetch(objects, int(object) * 7 + i));
+    for (int i = 0; i < 3; i++) rows[i] = uintBitsToFloat(texelFetch(objects, int(object) * OBJECT_TEXELS + i));
 }
 void world_to_object(uint object, out vec4 rows[3]) {
-    for (int i = 0; i < 3; i++) rows[i] = uintBitsToFloat(texelFetch(objects, int(object) * 7 + 3 + i));
+    for (int i = 0; i < 3; i++) rows[i] = uintBitsToFloat(texelFetch(objects, int(object) * OBJECT_TEXELS + 3 + i));
 }
 
 Material load_material(uint index) {
-    int base = int(index) * 8;
+    int base = int(index) * MATERIAL_TEXELS;
     uvec4 last = texelFetch(materials, base + 7);
     return Material(
         uintBitsToFloat(texelFetch(materials, base)), uintBitsToFloat(texelFetch(materials, base + 1)),
@@ -143,7 +148,7 @@ Material load_material(uint index) {
 }
 
 Luminaire load_luminaire(uint index) {
-    int base = int(index) * 7;
+    int base = int(index) * LUMINAIRE_TEXELS;
     uvec4 choice = texelFetch(luminaires, base + 5);
     return Luminaire(
         uintBitsToFloat(texelFetch(luminaires, base)), uintBitsToFloat(texelFetch(luminaires, base + 1)),

@@ -76,7 +76,8 @@ fn a_run_and_its_baselines() {
         "--estimator",
         "cosine",
     ];
-    let output = bench(path, &[&words[..], &["--out", "first", "--page", "page.md"]].concat());
+    let of_scenes = ["--section", "convergence", "--section", "preparation"];
+    let output = bench(path, &[&words[..], &of_scenes, &["--out", "first", "--page", "page.md"]].concat());
     assert!(output.status.success(), "{}", said(&output));
     let files = [
         "bench.json",
@@ -133,7 +134,7 @@ fn a_run_and_its_baselines() {
         }
         other["machine"]["device"] = "another device".into();
         std::fs::write(path.join("other.json"), other.to_string()).unwrap();
-        let output = bench(path, &[&words[..], &["--out", "second", "--baseline", "other.json"]].concat());
+        let output = bench(path, &[&words[..], &of_scenes, &["--out", "second", "--baseline", "other.json"]].concat());
         let said = said(&output);
         assert_eq!(output.status.code(), Some(code), "{said}");
         let told =
