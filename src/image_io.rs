@@ -104,7 +104,7 @@ pub fn save(path: &Path, film: &Film, exposure: f32) -> Result<()> {
                 ("samplesPerPixel", Attribute::Number(f64::from(film.least_samples()))),
                 ("droppedSamples", Attribute::Number(film.dropped.values().copied().map(f64::from).sum())),
             ];
-            if let Some(ErrorEstimate { rmse, rel_mse, fireflies }) = errors.as_ref().map(|errors| errors.total) {
+            if let Some(ErrorEstimate { rmse, rel_mse, fireflies, .. }) = errors.as_ref().map(|errors| errors.total) {
                 attributes.push(("estimatedRMSE", Attribute::Number(rmse)));
                 attributes.push(("estimatedRelMSE", Attribute::Number(rel_mse)));
                 attributes.push(("fireflies", Attribute::Number(fireflies as f64)));

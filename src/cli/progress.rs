@@ -101,7 +101,7 @@ mod tests {
         let progress =
             Progress { samples: 1600, pixels: 100, rays: 6_000_000, seconds: 2.0, limits, ..Progress::default() };
         assert_eq!(describe(&progress), "16.0 of 64 samples a pixel, 3.00 Mrays/s, 6.00 s left");
-        let error = Some(ErrorEstimate { rmse: 0.1, rel_mse: 0.0625, fireflies: 0 });
+        let error = Some(ErrorEstimate { rmse: 0.1, rel_mse: 0.0625, fireflies: 0, rel_mse_with_fireflies: 0.0625 });
         let limits = Limits { noise: Some(0.125), ..limits };
         let with_error = Progress { limits, error, ..progress };
         assert_eq!(describe(&with_error), "16.0 of 64 samples a pixel, 3.00 Mrays/s, error 25 %, 6.00 s left");

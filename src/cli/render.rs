@@ -197,8 +197,14 @@ fn summary(options: &RenderOptions, rendered: &Rendered, seconds: Seconds, writt
         text += &format!("estimated error {} (RMSE {:.3e})", percent(error.relative()), error.rmse);
         text += &match error.fireflies {
             0 => "\n".into(),
-            1 => ", without 1 pixel that is a firefly or a very small lamp\n".into(),
-            n => format!(", without {n} pixels that are fireflies or very small lamps\n"),
+            1 => format!(
+                ", without 1 pixel that is a firefly or a very small lamp (with it {})\n",
+                percent(error.relative_with_fireflies())
+            ),
+            n => format!(
+                ", without {n} pixels that are fireflies or very small lamps (with them {})\n",
+                percent(error.relative_with_fireflies())
+            ),
         };
     }
     text += &format!(

@@ -31,6 +31,7 @@ struct ErrorFigures {
     rmse: f64,
     /// Pixels that are left out of it.
     fireflies: u64,
+    relative_with_fireflies: f64,
 }
 
 /// What `--stats` writes.
@@ -101,6 +102,7 @@ impl<'a> Stats<'a> {
                 rel_mse: e.rel_mse,
                 rmse: e.rmse,
                 fireflies: e.fireflies,
+                relative_with_fireflies: e.relative_with_fireflies(),
             }),
             samples: progress.samples,
             rays: progress.rays,

@@ -34,12 +34,20 @@ pub struct ErrorEstimate {
     pub rel_mse: f64,
     /// Pixels that are left out.
     pub fireflies: u64,
+    /// `rel_mse` with them, as if their neighbours told what they should look like. Where it is much larger, the picture either has fireflies or
+    /// has not seen enough of its light.
+    pub rel_mse_with_fireflies: f64,
 }
 
 impl ErrorEstimate {
     /// The relative error: the root of [`ErrorEstimate::rel_mse`].
     pub fn relative(&self) -> f64 {
         self.rel_mse.sqrt()
+    }
+
+    /// The same with the fireflies.
+    pub fn relative_with_fireflies(&self) -> f64 {
+        self.rel_mse_with_fireflies.sqrt()
     }
 }
 
@@ -108,12 +116,12 @@ impl Film {
             })
             .collect();
 
-        let (mut square, mut relative_square, mut counted) = (0.0, 0.0, 0u64);
+        let (mut square, mut relative_square, mut left_out, mut counted) = (0.0, 0.0, 0.0, 0u64);
         let mut errors = ErrorMap {
             standard_error: Vec::with_capacity(own.len()),
             relative: Vec::with_capacity(own.len()),
             firefly,
-            total: ErrorEstimate { rmse: 0.0, rel_mse: 0.0, fireflies: 0 },
+            total: ErrorEstimate { rmse: 0.0, rel_mse: 0.0, fireflies: 0, rel_mse_with_fireflies: 0.0 },
         };
         for (pixel, own_here) in own.iter().enumerate() {
             let alone = errors.firefly[pixel];
@@ -128,7 +136,10 @@ impl Film {
             errors.standard_error.push(std::array::from_fn(|c| variance[c].sqrt() as f32));
             let relative: f64 = channels.clone().map(|c| variance[c] / scale[c]).sum();
             errors.relative.push((relative / 3.0).sqrt() as f32);
-            if !alone {
+            if alone {
+                let floor = |c: usize| expected[pixel][c].powi(2) + REL_MSE_FLOOR;
+                left_out += channels.map(|c| own_here[c].variance / floor(c)).sum::<f64>();
+            } else {
                 counted += 3;
                 square += channels.clone().map(|c| own_here[c].variance).sum::<f64>();
                 relative_square += channels.map(|c| own_here[c].variance / scale[c]).sum::<f64>();
@@ -139,6 +150,7 @@ impl Film {
             rmse: (square / counted_or_one).sqrt(),
             rel_mse: relative_square / counted_or_one,
             fireflies: own.len() as u64 - counted / 3,
+            rel_mse_with_fireflies: (relative_square + left_out) / (3 * own.len()) as f64,
         };
         Some(errors)
     }
@@ -277,7 +289,7 @@ mod tests {
         assert!(errors.firefly[77] && errors.total.fireflies == 1 && errors.total.rmse > 0.0);
         assert!(errors.standard_error.iter().flatten().all(|e| e.is_finite()));
         let error = film(8, 0.0, |x, _| f64::from(x)).error().unwrap();
-        assert_eq!(error, ErrorEstimate { rmse: 0.0, rel_mse: 0.0, fireflies: 0 });
+        assert_eq!(error, ErrorEstimate { rmse: 0.0, rel_mse: 0.0, fireflies: 0, rel_mse_with_fireflies: 0.0 });
         assert_eq!(film(8, 0.0, |_, _| 0.0).error().unwrap().rel_mse, 0.0);
     }
 }
