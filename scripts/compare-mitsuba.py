@@ -23,7 +23,8 @@ pixel filter (Mitsuba: <rfilter type="box"/>), the number of bounces (max_depth 
 `one_sided = true`) have to be the same in both scenes.
 
 A race renders in turn, several times, each time with another seed. What counts is relMSE (the mean of (a - b)^2 / (b^2 + 0.01) over pixels and
-channels) times the seconds for rendering alone: half of it is twice as fast. Loading, building and the first use of a kernel are left out on both sides.
+channels) times the seconds for rendering alone: half of it is twice as fast. Loading, building and the first use of a kernel are left out on both sides; Mitsuba's
+seconds have what its Python does for a render, and the reference's own error is in both errors.
 """
 
 import argparse
@@ -164,8 +165,8 @@ def race(arguments):
 
     reference = load(arguments.reference)
     height, width = reference.shape[:2]
-    folder = Path(tempfile.mkdtemp())
-    picture, figures = folder / "ours.exr", folder / "ours.json"
+    folder = tempfile.TemporaryDirectory()
+    picture, figures = Path(folder.name, "ours.exr"), Path(folder.name, "ours.json")
     theirs = mitsuba.load_file(str(arguments.theirs))
 
     def ours_run(seed, spp):
@@ -184,11 +185,12 @@ def race(arguments):
         return np.array(image)[..., :3].astype(float), seconds
 
     # Compiles kernels on both sides.
-    ours_run(0, 4), theirs_run(0, 4)
+    ours_run(0, arguments.spp), theirs_run(0, arguments.spp)
     print(f"{width} x {height}, {arguments.spp} samples a pixel; luminaire {' '.join(arguments.option)}, Mitsuba {mitsuba.__version__} {arguments.variant}")
     print("round   ours: relMSE  seconds  product  Mrays/s    theirs: relMSE  seconds  product    theirs / ours")
     products = []
-    for seed in range(1, arguments.rounds + 1):
+    # Not the seeds that `render` takes: a reference made of those would be no reference.
+    for seed in range(1001, 1001 + arguments.rounds):
         image, seconds, rate = ours_run(seed, arguments.spp)
         their_image, their_seconds = theirs_run(seed, arguments.spp)
         ours, their = rel_mse(image, reference), rel_mse(their_image, reference)

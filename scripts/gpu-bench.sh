@@ -34,7 +34,9 @@ for file in "$@"; do races+=("$(realpath "$file")"); done
 cd "$cd_to"
 
 "$program" devices | tee "$out/devices.txt"
-"$program" bench --out "$out" --page "$out/page.md" ${LONG:+--long}
+# A section that fails does not keep the others from the page, nor the races from being run.
+failed=0
+"$program" bench --out "$out" --page "$out/page.md" ${LONG:+--long} || failed=$?
 
 set -- "${races[@]}"
 while (($#)); do
@@ -47,3 +49,4 @@ while (($#)); do
     shift 3
 done
 echo "$out/index.html"
+exit "$failed"

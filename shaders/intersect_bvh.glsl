@@ -14,7 +14,7 @@ const int STACK_SIZE = 32;
 // A ray in the space that is being traversed, with what the box and triangle tests need of it.
 struct TraversalRay {
     vec3 origin;
-    vec3 inverse;      // 1 / direction, finite
+    vec3 inverse;      // 1 / direction; finite unless that is shorter than 1e-20
     uint octant_inv4;  // order of the children, in each byte
     vec3 direction;
     uint axis;         // largest component of the direction
@@ -61,9 +61,6 @@ uint intersect_node(TraversalRay ray, float t_max, uint node, out uvec2 bases, o
     if (ray.inverse.x < 0.0) nx = nx.zwxy;
     if (ray.inverse.y < 0.0) ny = ny.zwxy;
     if (ray.inverse.z < 0.0) nz = nz.zwxy;
-    // 1 + 4 * 2^-23 on the far side: rays of far-away origins round by their distance, not by the box (Ize 2013).
-    vec3 far_scale = scale * 1.0000005;
-    vec3 far_offset = offset * 1.0000005;
     int last = floatBitsToInt(t_max);
     uint mask = 0u;
     for (uint half_index = 0u; half_index < 2u; half_index++) {
@@ -77,10 +74,11 @@ uint intersect_node(TraversalRay ray, float t_max, uint node, out uvec2 bases, o
         for (uint child = 0u; child < 4u; child++) {
             // As integers: what is not negative compares alike, what is negative is less than that, and there is no NaN to look for.
             ivec3 t0 = floatBitsToInt(vec3(byte_of(entry.x, child), byte_of(entry.y, child), byte_of(entry.z, child)) * scale + offset);
-            ivec3 t1 = floatBitsToInt(vec3(byte_of(leave.x, child), byte_of(leave.y, child), byte_of(leave.z, child)) * far_scale + far_offset);
+            ivec3 t1 = floatBitsToInt(vec3(byte_of(leave.x, child), byte_of(leave.y, child), byte_of(leave.z, child)) * scale + offset);
             int near = max(max(t0.x, t0.y), max(t0.z, 0));
-            int far = min(min(t1.x, t1.y), min(t1.z, last));
-            if (near <= far) {
+            // 1 + 4 * 2^-23: rays of far-away origins round by their distance, not by the box (Ize 2013).
+            int far = floatBitsToInt(intBitsToFloat(min(min(t1.x, t1.y), t1.z)) * 1.0000005);
+            if (near <= min(far, last)) {
                 mask |= bitfieldExtract(bits, int(8u * child), 8) << bitfieldExtract(bit_index, int(8u * child), 8);
             }
         }
@@ -113,7 +111,9 @@ bool intersect_triangle(TraversalRay ray, float t_max, uint triangle, out float 
     precise float w = b2.x * a2.y - b2.y * a2.x;
     if ((u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0)) return false;
     float determinant = u + v + w;
-    if (determinant == 0.0) return false;
+    // Neither zero nor, of coordinates that overflow, infinite or no number.
+    uint size = floatBitsToUint(abs(determinant));
+    if (size == 0u || size >= 0x7f800000u) return false;
     weights = vec3(v, w, determinant);
     // Distances of the corners.
     vec3 corners = vec3(a.z, b.z, c.z) * ray.shear.z;

@@ -59,7 +59,7 @@ layout(set = 0, binding = 2) uniform usamplerBuffer triangles;
 // Vertex normals, three texels a triangle, where VERTEX_NORMALS.
 layout(set = 0, binding = 3) uniform usamplerBuffer normals;
 
-// Objects, seven texels each: three rows to world space, three rows back, and `ObjectPlace`. Texels, because software devices read them
+// Objects, seven texels each: three rows to world space, three rows back, and `ObjectPlace`. Texels, because lavapipe reads them
 // several times faster than storage buffers.
 layout(set = 0, binding = 4) uniform usamplerBuffer objects;
 

@@ -68,7 +68,7 @@ pub struct Progress {
     pub pixels: u64,
     /// Rays so far, of all kinds.
     pub rays: u64,
-    /// Shadow rays among them; one of the others for each sample comes from the camera.
+    /// Shadow rays among them; one of the others for each sample comes from the camera, unless a driver did not finish it.
     pub shadow_rays: u64,
     /// Wall-clock seconds so far.
     pub seconds: f64,

@@ -166,6 +166,17 @@ fn structures_of_texels_have_the_host_s_sizes() {
         assert_eq!(size % 16, 0, "{name}");
         assert!(source.contains(&format!("const int {name}_TEXELS = {};", size / 16)), "{name}: {size} bytes");
     }
+    // Where `load_material`, `load_luminaire` and `object_place` look for what is no vec4.
+    let offset = |members: &[layout::Member], name: &str| members.iter().find(|m| m.0 == name).expect(name).1;
+    let of_material = |name: &str| offset(layout::Material::MEMBERS, name);
+    assert_eq!(["maps", "opacity_map", "one_sided"].map(of_material), [96, 112, 116]);
+    let of_luminaire = |name: &str| offset(layout::Luminaire::MEMBERS, name);
+    assert_eq!(["kind", "threshold", "alias_index", "triangle", "material"].map(of_luminaire), [80, 84, 88, 92, 96]);
+    let of_object = |name: &str| offset(layout::Object::MEMBERS, name);
+    assert_eq!(
+        ["world_to_object", "root_node", "triangle_offset", "material", "scene_index"].map(of_object),
+        [48, 96, 100, 104, 108]
+    );
 }
 
 /// The specialization constants have the ids that the host gives them, by name.

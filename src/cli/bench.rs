@@ -35,6 +35,14 @@ pub fn run(options: &BenchOptions) -> Result<ExitCode> {
     let sections = named(&options.sections)?;
     let folder = options.out.clone().unwrap_or_else(|| FOLDER.into());
     let baseline = options.baseline.as_deref().map(Baseline::read).transpose()?;
+    let same =
+        |path: &Path| path.canonicalize().is_ok_and(|p| folder.join("bench.json").canonicalize().is_ok_and(|q| p == q));
+    if options.baseline.as_deref().is_some_and(same) {
+        return Err(Error::Usage(format!(
+            "--baseline is the file that this run would write into {}: give another folder by --out, or copy the file elsewhere first",
+            folder.display()
+        )));
+    }
     let mut settings = settings(options, &sections)?;
     std::fs::create_dir_all(&folder).map_err(|e| Error::write(&folder, format!("the folder cannot be made ({e})")))?;
     check_writable(&folder.join("index.html"))?;

@@ -88,7 +88,7 @@ DIR gets index.html, which needs no other file; figures.csv (every measured numb
 and the charts as SVG.
 
 A figure has become worse if its rounds all lie on the worse side of the baseline's, and the two ranges lie further apart than 5 % and than either of them is
-wide (3 times that with 3 rounds); with fewer than 3 rounds nothing is concluded.
+wide (1.5 times that with 4 rounds, 3 times with 3); with fewer than 3 rounds nothing is concluded.
 
 Exit codes:
   0    measured; no figure is worse than in the baseline

@@ -107,7 +107,8 @@ impl<'a> Stats<'a> {
             samples: progress.samples,
             rays: progress.rays,
             camera_rays: progress.samples,
-            bounce_rays: progress.rays - progress.samples - progress.shadow_rays,
+            // Rays of samples that a driver did not finish are not counted, but the samples are.
+            bounce_rays: progress.rays.saturating_sub(progress.samples + progress.shadow_rays),
             shadow_rays: progress.shadow_rays,
             mrays_per_second: progress.mrays_per_second(),
             samples_per_second: if progress.seconds > 0.0 { progress.samples as f64 / progress.seconds } else { 0.0 },

@@ -130,7 +130,7 @@ impl Drop for Buffer {
     }
 }
 
-/// A buffer that shaders read as `uvec4` texels: on lavapipe a texel fetch costs half of a storage-buffer load.
+/// A buffer that shaders read as `uvec4` texels: on lavapipe a texel fetch costs a third of a storage-buffer load (`docs/performance.md`).
 pub struct TexelBuffer {
     pub(crate) view: vk::BufferView,
     pub(crate) buffer: Buffer,
@@ -145,7 +145,7 @@ impl TexelBuffer {
         usage: vk::BufferUsageFlags,
     ) -> Result<Self> {
         let (needed, limit) = (size_of_val(data) as u64 / 16, u64::from(device.limits.max_texel_buffer_elements));
-        let advice = "use smaller meshes (as instances) and images, another device, or --backend cpu";
+        let advice = "use fewer of them (meshes: as instances; images: smaller), another device, or --backend cpu";
         device.check_limit(name, needed, limit, "texels (maxTexelBufferElements)", advice)?;
         let buffer = Buffer::upload(device, name, data, usage | vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER)?;
         let info = vk::BufferViewCreateInfo::default()

@@ -174,6 +174,10 @@ fn measure_room(bench: &Workbench, plan: &Plan, mut room: Room, family: Family) 
                 measured.intersectors[0].rates[k].0.push(rate);
             }
             for ((which, tracer), repeats) in tracers.iter().zip(&repeats) {
+                // A GPU that has just idled has to speed up again.
+                if !bench.is_software() {
+                    tracer.trace(range(k, set.len()), kind.any_hit(), repeats[k])?;
+                }
                 let seconds = tracer.trace(range(k, set.len()), kind.any_hit(), repeats[k])?;
                 let rays = set.len() as f64 * f64::from(repeats[k]);
                 measured.intersectors[*which].rates[k].0.push(rays / seconds * 1e-6);

@@ -55,9 +55,9 @@ fn how(plan: &Plan, rooms: &[Measured]) -> Vec<String> {
              triangles. No ray escapes."
         ),
         format!(
-            "Every timing is of the rays traced over and over for about {} s at least, by the device's clock where it has one; the intersectors take \
+            "Every timing is of the rays traced over and over for about {} s, by the device's clock where it has one; the intersectors take \
              turns, {} rounds of them, after a warm-up that also compiles. Tables have the median and (least to most); bars in the charts are two \
-             standard errors. Building is the time from the scene in memory to its first ray, upload included, without the compilation of \
+             standard errors. What so few rays touch may stay in a cache: large rooms look better here than in a picture. Building is the time from the scene in memory to its first ray, upload included, without the compilation of \
              kernels.",
             plan.seconds, plan.rounds
         ),

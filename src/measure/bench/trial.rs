@@ -193,14 +193,14 @@ pub(super) struct Reference {
 impl Reference {
     /// A file's picture, whose error is known if it holds standard errors.
     pub fn given(picture: &Picture) -> Self {
-        let own_error = picture.error.as_ref().map(|errors| {
+        let own_error = picture.error.as_ref().and_then(|errors| {
             let pairs = errors.iter().zip(&picture.rgb).filter(|(e, b)| metrics::finite(e) && metrics::finite(b));
             let all: Vec<f64> = pairs
                 .flat_map(|(e, b)| {
                     (0..3).map(|c| f64::from(e[c]).powi(2) / (f64::from(b[c]).powi(2) + crate::film::REL_MSE_FLOOR))
                 })
                 .collect();
-            all.iter().sum::<f64>() / all.len() as f64
+            (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64)
         });
         Reference { picture: picture.clone(), own_error, words: "the picture that was given".into() }
     }

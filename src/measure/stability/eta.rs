@@ -165,7 +165,7 @@ fn findings(charts: &[Chart]) -> Findings {
             at("longest", COMPUTE_BVH, 3.0)
         ),
         mends: "The cosine is computed as (eta - 1)(eta + 1) + cos^2, which has no such difference where the index is nearly 1. Light that \
-             passes a surface is divided by the square of the index, and multiplied by it on the way out: exactly 1. Extinction leaves one path \
+             passes a surface is divided by the square of the index, and multiplied by it on the way out: exactly 1. Extinction ends one path \
              in 10 000 at each bounce, so that trapped light ends."
             .into(),
         sees: "Nothing in the picture. Scenes in which much light is inside of glass bodies (luminaires cast in glass) take long: limit the bounces."
