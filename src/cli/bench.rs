@@ -192,8 +192,10 @@ fn compare(baseline: &Baseline, report: &Report) -> Result<usize> {
     print(&format!("\nagainst the baseline\n{}", table(2, &Baseline::summary(&changes))))?;
     if rows.len() > 1 {
         print(&format!("\nbeyond the noise\n{}", table(2, &rows)))?;
-    } else {
+    } else if changes.iter().any(|change| change.verdict == Verdict::Same) {
         print("\nno figure differs by more than the noise\n")?;
+    } else if !changes.is_empty() {
+        print("\nnothing can be concluded: one of the runs has too few rounds (3 at least)\n")?;
     }
     let unmatched = baseline.unmatched(report);
     for (names, which) in unmatched.iter().zip(["the baseline", "this run"]) {

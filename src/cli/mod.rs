@@ -73,7 +73,13 @@ Examples:
   luminaire stability samples albedo
   luminaire stability --out docs/stability --page docs/stability.md
 
-Without a Vulkan device the reference runs alone. Exit code 1 if a sweep failed; the others are written nevertheless.";
+Without a Vulkan device the reference runs alone.
+
+Exit codes:
+  0    measured
+  1    a sweep failed (the others are written), or a file cannot be written
+  2    wrong usage: there is no such sweep
+  130  interrupted; the sweeps that are done are written, the page is not";
 
 const BENCH_HELP: &str = "\
 Examples:

@@ -207,6 +207,9 @@ fn summary(options: &RenderOptions, rendered: &Rendered, seconds: Seconds, writt
             ),
         };
     }
+    if let (Some(limit), false) = (progress.limits.noise, matches!(rendered.end, End::Noise)) {
+        text += &format!("--noise {limit} was not reached\n");
+    }
     text += &format!(
         "load {}, build {}, render {}; {:.2} Mrays/s, {:.3} million samples/s\n",
         duration(seconds.load),
