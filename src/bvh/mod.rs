@@ -47,7 +47,8 @@ impl TwoLevelBvh {
     pub fn build(scene: &Scene, instances: bool) -> Self {
         let mut built: Vec<CwBvh> = scene.meshes.iter().map(build_mesh).collect();
         let (mut top, object_order) = if instances {
-            let mut top = build(&instance_boxes(scene));
+            // A leaf of several instances would have rays enter those that they miss.
+            let mut top = build(&instance_boxes(scene), 1);
             let order = std::mem::take(&mut top.primitive_indices);
             (top.nodes, order)
         } else {
@@ -90,7 +91,7 @@ fn build_mesh(mesh: &Mesh) -> CwBvh {
             Aabb::new(a.min(b).min(c) - pad, a.max(b).max(c) + pad)
         })
         .collect();
-    build(&boxes)
+    build(&boxes, 3)
 }
 
 /// World-space boxes of the instances, padded for the rounding of their transforms.
@@ -121,8 +122,16 @@ fn round_to(v: DVec3, outward: impl Fn(f32) -> f32) -> Vec3A {
     Vec3A::from(Vec3::from_array(v.to_array().map(|x| outward(x as f32))))
 }
 
-fn build(boxes: &[Aabb]) -> CwBvh {
-    build_cwbvh(boxes, BvhBuildParams::medium_build(), &mut Duration::default())
+/// Meshes of so many triangles get the better BVH, which takes four times as long to build: 0.3 s at most.
+const WORTH_OPTIMIZING: usize = 1 << 17;
+
+/// With at most `most_in_leaf` boxes in a leaf, if that is fewer than three.
+fn build(boxes: &[Aabb], most_in_leaf: u32) -> CwBvh {
+    let quality = match boxes.len() {
+        ..=WORTH_OPTIMIZING => BvhBuildParams::very_slow_build(),
+        _ => BvhBuildParams::medium_build(),
+    };
+    build_cwbvh(boxes, BvhBuildParams { max_prims_per_leaf: most_in_leaf, ..quality }, &mut Duration::default())
 }
 
 /// Levels of a BVH.
