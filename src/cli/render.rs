@@ -1,14 +1,16 @@
 //! `luminaire render`.
 
+use super::checkpoint::{self, Checkpoint};
 use super::progress::{Reporter, duration, percent};
 use super::stats::{Seconds, Stats};
 use super::{RenderOptions, print, tell};
 use luminaire::backend::{self, Backend, Opened, Request};
-use luminaire::film::Film;
+use luminaire::film::{Batch, Film};
 use luminaire::measure::heat_map;
-use luminaire::render::{End, Limits, Rendered, render};
+use luminaire::part::Provenance;
+use luminaire::render::{End, Limits, Rendered, Traced, Tracer, resume};
 use luminaire::scene::{self, FilmSettings, Scene};
-use luminaire::{Error, Result, image_io};
+use luminaire::{Error, Result, image_io, part};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -25,6 +27,9 @@ static WRITING: AtomicBool = AtomicBool::new(false);
 
 /// The exit code of an interrupted run: 128 + SIGINT, as shells have it.
 const INTERRUPTED: u8 = 130;
+
+/// The exit code where a device failed while it rendered.
+const DEVICE_FAILED: u8 = 3;
 
 /// Loads, renders and writes. Everything that can be checked beforehand is.
 pub fn run(options: &RenderOptions) -> Result<ExitCode> {
@@ -67,6 +72,12 @@ fn trace(
     outputs: &[PathBuf],
     say: &dyn Fn(&str),
 ) -> Result<ExitCode> {
+    // Before a device is opened, which takes longer than to find a checkpoint that does not fit.
+    let begun = if options.pixel.is_some() {
+        Rendered::nothing((scene.film.width, scene.film.height), 0)?
+    } else {
+        checkpoint::begin(options, scene, say)?
+    };
     let start = Instant::now();
     let request = Request { backend: options.backend.backend(), device: options.device.clone() };
     let mut opened = backend::open(scene, &request)?;
@@ -81,23 +92,82 @@ fn trace(
     }
     let other_limit = options.time.is_some() || options.noise.is_some();
     let scene_spp = (!other_limit).then_some(scene.settings.spp);
-    let limits = Limits { spp: options.spp.or(scene_spp), seconds: options.time, noise: options.noise };
+    let spp = options.samples.as_ref().map(|samples| samples.end).or(options.spp).or(scene_spp);
+    let limits = Limits { spp, seconds: options.time, noise: options.noise };
+    let mut checkpoint = Checkpoint::of(options, scene);
     let mut reporter = Reporter::new(options.quiet);
     RENDERING.store(true, Ordering::SeqCst);
-    let size = (scene.film.width, scene.film.height);
-    let rendered = render(opened.tracer.as_mut(), size, limits, &mut |p| reporter.update(p), &STOP)?;
+    let mut watch = |rendered: &Rendered| {
+        reporter.update(&rendered.progress);
+        if let Some(checkpoint) = &mut checkpoint {
+            checkpoint.update(rendered);
+        }
+    };
+    let mut tracer = Losing::perhaps(opened.tracer.as_mut())?;
+    let rendered = resume(&mut tracer, begun, limits, &mut watch, &STOP);
     reporter.finish();
+    if let (Some(wanted), least) = (spp, rendered.film.first_sample + rendered.film.least_samples())
+        && least > wanted
+    {
+        say(&format!("the checkpoint already held more samples than were asked for: {least} a pixel"));
+    }
     seconds.render = rendered.progress.seconds;
     seconds.device = rendered.device_seconds;
-    finish(options, scene, &opened, rendered, seconds, outputs, say)
+    finish(options, scene, &opened, rendered, checkpoint.as_ref(), seconds, outputs, say)
+}
+
+/// A tracer whose device is lost after some batches: with LUMINAIRE_LOSE_DEVICE_AFTER, so that scripts can try what happens then.
+struct Losing<'a> {
+    tracer: &'a mut dyn Tracer,
+    batches_left: Option<u64>,
+}
+
+impl<'a> Losing<'a> {
+    fn perhaps(tracer: &'a mut dyn Tracer) -> Result<Self> {
+        const NAME: &str = "LUMINAIRE_LOSE_DEVICE_AFTER";
+        let batches_left = match std::env::var(NAME) {
+            Ok(text) => {
+                Some(text.parse().map_err(|_| Error::Usage(format!("{NAME}={text}: expected a number of batches")))?)
+            }
+            Err(_) => None,
+        };
+        Ok(Losing { tracer, batches_left })
+    }
+}
+
+impl Tracer for Losing<'_> {
+    fn trace(&mut self, batch: &Batch) -> Result<Traced> {
+        match &mut self.batches_left {
+            Some(0) => Err(Error::Vulkan {
+                call: "vkQueueSubmit",
+                device: "the device".into(),
+                reason: "the device is lost (as LUMINAIRE_LOSE_DEVICE_AFTER asks)".into(),
+            }),
+            Some(left) => {
+                *left -= 1;
+                self.tracer.trace(batch)
+            }
+            None => self.tracer.trace(batch),
+        }
+    }
+
+    fn max_sums(&self) -> usize {
+        self.tracer.max_sums()
+    }
+
+    fn batch_seconds(&self) -> f64 {
+        self.tracer.batch_seconds()
+    }
 }
 
 /// Writes what there is, and tells how it ended.
+#[expect(clippy::too_many_arguments, reason = "each is one of the things that a render leaves")]
 fn finish(
     options: &RenderOptions,
     scene: &Scene,
     opened: &Opened,
     rendered: Rendered,
+    checkpoint: Option<&Checkpoint<'_>>,
     mut seconds: Seconds,
     outputs: &[PathBuf],
     say: &dyn Fn(&str),
@@ -118,9 +188,16 @@ fn finish(
         say(&format!("warning: {black} pixels have no sample and are black: the render ended during the first pass"));
     }
     WRITING.store(true, Ordering::SeqCst);
+    // First of all: whatever fails after it, nothing is lost.
+    let saved = checkpoint.filter(|_| rendered.progress.samples > 0).map(|checkpoint| checkpoint.save(&rendered));
     let done = write(options, scene, opened, &rendered, &mut seconds, written);
     WRITING.store(false, Ordering::SeqCst);
+    let kept = matches!(saved, Some(Ok(())));
+    if done.is_err() && kept {
+        say("the samples are in the checkpoint; the same command with --resume writes the pictures again");
+    }
     done?;
+    saved.transpose()?;
     if !options.quiet {
         print(&summary(options, &rendered, seconds, written))?;
     }
@@ -132,13 +209,22 @@ fn finish(
             } else {
                 "interrupted; the picture holds what was done until then"
             });
+            if kept {
+                say("the same command with --resume goes on from the checkpoint");
+            }
             Ok(ExitCode::from(INTERRUPTED))
         }
         End::Failed(error) => {
+            tell(&format!("error: {error}"));
             if !written.is_empty() {
                 say("the render failed; the picture holds what was done until then");
             }
-            Err(error)
+            if kept {
+                say(
+                    "the same command with --resume goes on from the checkpoint, also on another --device or --backend",
+                );
+            }
+            Ok(ExitCode::from(DEVICE_FAILED))
         }
     }
 }
@@ -153,9 +239,13 @@ fn write(
     written: &[PathBuf],
 ) -> Result<()> {
     let start = Instant::now();
+    let provenance = options.samples.as_ref().map(|_| Provenance::of(scene));
+    let save = |path: &PathBuf| match (&provenance, image_io::Format::of(path)?) {
+        (Some(provenance), image_io::Format::Exr) => part::save(path, rendered, provenance),
+        _ => image_io::save(path, &rendered.film, scene.settings.exposure),
+    };
     // Every file is tried: one that cannot be written must not cost the others.
-    let saved: Vec<_> =
-        written.iter().map(|path| image_io::save(path, &rendered.film, scene.settings.exposure)).collect();
+    let saved: Vec<_> = written.iter().map(save).collect();
     saved.into_iter().collect::<Result<()>>()?;
     if let (Some(path), Some(errors)) = (&options.error_map, rendered.film.error_map()) {
         let FilmSettings { width, height, .. } = scene.film;
@@ -228,6 +318,7 @@ fn check_combinations(options: &RenderOptions) -> Result<()> {
             "--device chooses a Vulkan device, but --backend cpu uses none: leave one of them out".into(),
         ));
     }
+    checkpoint::check(options)?;
     options.estimator.check()
 }
 
