@@ -182,17 +182,19 @@ fn finish(
         );
         say(&format!("warning: {} samples that were not finite, or lost, are left out{replay}", rendered.dropped));
     }
-    let written = if rendered.progress.samples > 0 { outputs } else { &[] };
+    WRITING.store(true, Ordering::SeqCst);
+    // First of all: whatever fails after it, nothing is lost.
+    let saved = checkpoint.filter(|_| rendered.progress.samples > 0).map(|checkpoint| checkpoint.save(&rendered));
+    let kept = matches!(saved, Some(Ok(())));
+    let unfinished_part = options.samples.is_some() && !matches!(rendered.end, End::Samples);
+    // Whoever finds a part may take it to be whole, so that one that is not stays in the checkpoint, if there is one.
+    let written = if rendered.progress.samples == 0 || unfinished_part && kept { &[] } else { outputs };
     let black = rendered.film.samples.iter().filter(|samples| **samples == 0).count();
     if black > 0 && !written.is_empty() {
         say(&format!("warning: {black} pixels have no sample and are black: the render ended during the first pass"));
     }
-    WRITING.store(true, Ordering::SeqCst);
-    // First of all: whatever fails after it, nothing is lost.
-    let saved = checkpoint.filter(|_| rendered.progress.samples > 0).map(|checkpoint| checkpoint.save(&rendered));
     let done = write(options, scene, opened, &rendered, &mut seconds, written);
     WRITING.store(false, Ordering::SeqCst);
-    let kept = matches!(saved, Some(Ok(())));
     if done.is_err() && kept {
         say("the samples are in the checkpoint; the same command with --resume writes the pictures again");
     }
@@ -204,8 +206,10 @@ fn finish(
     match rendered.end {
         End::Samples | End::Time | End::Noise => Ok(ExitCode::SUCCESS),
         End::Stopped => {
-            say(if written.is_empty() {
+            say(if rendered.progress.samples == 0 {
                 "interrupted before the first sample; no picture is written"
+            } else if written.is_empty() {
+                "interrupted; the part is not finished and not written"
             } else {
                 "interrupted; the picture holds what was done until then"
             });
