@@ -11,7 +11,7 @@ pub use openexr::{Attribute, Exr, Values};
 pub(crate) use openexr::{read_channels, read_texts};
 pub use picture::{Picture, read};
 
-use crate::film::{ErrorEstimate, Film};
+use crate::film::{Aovs, ErrorEstimate, Film};
 use crate::{Error, Result};
 use image::{ExtendedColorType, ImageEncoder};
 use std::io::{BufWriter, Write};
@@ -107,6 +107,16 @@ pub fn save(path: &Path, film: &Film, exposure: f32) -> Result<()> {
             ExtendedColorType::Rgb32F,
         ),
     })
+}
+
+/// Writes a film as an EXR picture with the layers of its AOVs ([`Aovs::channels`]) and the number of samples, `samples`.
+///
+/// # Errors
+/// [`Error::Write`] if the system refuses; then nothing has changed at `path`.
+pub fn save_with_aovs(path: &Path, film: &Film, aovs: &Aovs) -> Result<()> {
+    let mut more = aovs.channels();
+    more.push(("samples".into(), Values::Integer(film.samples.clone())));
+    save_exr(path, film, &more, vec![])
 }
 
 /// Writes a film as an EXR picture with further channels and attributes.
