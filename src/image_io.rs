@@ -89,19 +89,31 @@ pub fn check_writable(path: &Path) -> Result<()> {
 /// # Errors
 /// [`Error::Usage`] for an unknown ending, [`Error::Write`] if the system refuses; then nothing has changed at `path`.
 pub fn save(path: &Path, film: &Film, exposure: f32) -> Result<()> {
+    match Format::of(path)? {
+        Format::Exr => save_exr(path, film, &[], vec![]),
+        Format::Png | Format::Hdr => save_linear(path, film.width, film.height, &film.to_linear(), exposure),
+    }
+}
+
+/// Writes linear RGB, row by row from the top, to `path` in the format of its ending. `exposure` is in stops and changes a PNG only.
+///
+/// # Errors
+/// As [`save`].
+pub fn save_linear(path: &Path, width: u32, height: u32, linear: &[f32], exposure: f32) -> Result<()> {
     let format = Format::of(path)?;
-    let linear = film.to_linear();
-    let (width, height) = (film.width, film.height);
     write_atomically(path, |out| match format {
         Format::Png => image::codecs::png::PngEncoder::new(out).write_image(
-            &to_srgb8(&linear, exposure),
+            &to_srgb8(linear, exposure),
             width,
             height,
             ExtendedColorType::Rgb8,
         ),
-        Format::Exr => Ok(out.write_all(&encode_exr(film, &linear, &[], vec![])?)?),
+        Format::Exr => {
+            let exr = Exr { width, height, rgb: bytemuck::cast_slice(linear), error: None, more: &[], attributes: &[] };
+            Ok(out.write_all(&exr.encode().map_err(std::io::Error::other)?)?)
+        }
         Format::Hdr => image::codecs::hdr::HdrEncoder::new(out).write_image(
-            bytemuck::cast_slice(&before_truncation(&linear)),
+            bytemuck::cast_slice(&before_truncation(linear)),
             width,
             height,
             ExtendedColorType::Rgb32F,

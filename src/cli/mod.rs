@@ -307,6 +307,10 @@ pub struct RenderOptions {
     /// and compositing.
     #[arg(long, conflicts_with = "samples", help_heading = "Output")]
     pub aov: bool,
+    /// Write a denoised picture, too. It has a bias that the estimated error does not know.
+    #[cfg(feature = "denoise")]
+    #[arg(long, value_name = "FILE", conflicts_with = "samples", help_heading = "Output")]
+    pub denoised: Option<PathBuf>,
     /// Write the figures of the run to a JSON file.
     #[arg(long, value_name = "FILE.json", help_heading = "Output")]
     pub stats: Option<PathBuf>,

@@ -114,7 +114,7 @@ fn trace(
     }
     // A device that has failed would only fail again.
     let mut layers = None;
-    if options.aov && !matches!(rendered.end, End::Failed(_)) {
+    if wants_aovs(options) && !matches!(rendered.end, End::Failed(_)) {
         let size = (rendered.film.width, rendered.film.height);
         match aovs(&mut tracer, size, rendered.film.most_samples()) {
             Ok(found) => layers = Some(found),
@@ -248,6 +248,15 @@ fn finish(
     }
 }
 
+/// Whether somebody asks for what the camera sees first.
+fn wants_aovs(options: &RenderOptions) -> bool {
+    #[cfg(feature = "denoise")]
+    if options.denoised.is_some() {
+        return true;
+    }
+    options.aov
+}
+
 /// Writes the pictures and the figures.
 fn write(
     options: &RenderOptions,
@@ -262,7 +271,7 @@ fn write(
     let provenance = options.samples.as_ref().map(|_| Provenance::of(scene));
     let save = |path: &PathBuf| match (&provenance, aovs, image_io::Format::of(path)?) {
         (Some(provenance), _, image_io::Format::Exr) => part::save(path, rendered, provenance),
-        (_, Some(aovs), image_io::Format::Exr) => image_io::save_with_aovs(path, &rendered.film, aovs),
+        (_, Some(aovs), image_io::Format::Exr) if options.aov => image_io::save_with_aovs(path, &rendered.film, aovs),
         _ => image_io::save(path, &rendered.film, scene.settings.exposure),
     };
     // Every file is tried: one that cannot be written must not cost the others.
@@ -272,6 +281,12 @@ fn write(
         let FilmSettings { width, height, .. } = scene.film;
         let [low, high] = heat_map::RELATIVE_ERRORS;
         image_io::save_png(path, &heat_map::heat_map(width, height, &errors.relative, low, high))?;
+    }
+    #[cfg(feature = "denoise")]
+    if let (Some(path), Some(aovs)) = (&options.denoised, aovs) {
+        let FilmSettings { width, height, .. } = scene.film;
+        let picture = luminaire::denoise::denoise(&rendered.film, aovs)?;
+        image_io::save_linear(path, width, height, &picture, scene.settings.exposure)?;
     }
     seconds.write = start.elapsed().as_secs_f64();
     if let Some(path) = &options.stats {
@@ -355,6 +370,13 @@ fn outputs(options: &RenderOptions) -> Result<Vec<PathBuf>> {
     for (i, path) in outputs.iter().enumerate() {
         if outputs[..i].contains(path) {
             return Err(Error::Usage(format!("-o {} is given twice", path.display())));
+        }
+        image_io::check_output(path)?;
+    }
+    #[cfg(feature = "denoise")]
+    if let Some(path) = &options.denoised {
+        if outputs.contains(path) {
+            return Err(Error::Usage(format!("--denoised {}: the picture itself is written there", path.display())));
         }
         image_io::check_output(path)?;
     }
