@@ -3,7 +3,7 @@
 use crate::gpu::{Device, GpuTracer, Instance, PhysicalDevice};
 use crate::reference::Reference;
 use crate::render::Tracer;
-use crate::scene::{Integrator, Scene};
+use crate::scene::{FilmSettings, Integrator, Scene, Sensor};
 use crate::{Error, Result};
 use std::time::Instant;
 
@@ -37,10 +37,20 @@ pub struct Request {
     pub device: Option<String>,
 }
 
+/// A tracer of a whole scene, whose camera can move.
+pub trait SceneTracer: Tracer {
+    /// Looks at the scene from elsewhere, or with another film, as if it had been opened with them; much faster, because what rays are
+    /// traced against stays. The kind of projection has to be the one that it was opened with.
+    ///
+    /// # Errors
+    /// If the device fails.
+    fn look(&mut self, sensor: &Sensor, film: &FilmSettings) -> Result<()>;
+}
+
 /// A tracer, ready to run.
 pub struct Opened {
     /// The tracer with the scene loaded.
-    pub tracer: Box<dyn Tracer>,
+    pub tracer: Box<dyn SceneTracer>,
     /// What was chosen.
     pub backend: Backend,
     /// Name of the device.
@@ -155,7 +165,7 @@ fn preferred(ray_query: bool, software: bool) -> (Backend, &'static str) {
 }
 
 /// How much we would like to run on a device: GPUs before software, discrete before integrated, ray queries first.
-fn rank(device_type: ash::vk::PhysicalDeviceType, ray_query: bool) -> (u8, bool) {
+pub(crate) fn rank(device_type: ash::vk::PhysicalDeviceType, ray_query: bool) -> (u8, bool) {
     use ash::vk::PhysicalDeviceType as Type;
     let kind = match device_type {
         Type::DISCRETE_GPU => 4,

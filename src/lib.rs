@@ -68,5 +68,6 @@ pub mod reference;
 pub mod render;
 pub mod sampling;
 pub mod scene;
+pub mod view;
 
 pub use error::{Error, Result};

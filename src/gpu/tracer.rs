@@ -6,10 +6,11 @@ use super::scene::GpuScene;
 use super::shader::Shader;
 use super::{Buffer, Device, Kernel, layout};
 use crate::Result;
+use crate::backend::SceneTracer;
 use crate::film::{Batch, PixelSum, Rays, SampleId};
 use crate::render::{Traced, Tracer};
 use crate::sampling::PARTS;
-use crate::scene::Scene;
+use crate::scene::{FilmSettings, Scene, Sensor};
 use ash::vk;
 use gpu_allocator::MemoryLocation;
 use std::sync::Arc;
@@ -24,7 +25,7 @@ const DROPPED_SIZE: usize = size_of::<layout::Dropped>();
 pub struct GpuTracer {
     // Dropped before what it is bound to.
     kernel: Kernel,
-    _scene: GpuScene,
+    scene: GpuScene,
     sums: Buffer,
     dropped: Buffer,
     readback: Buffer,
@@ -74,7 +75,13 @@ impl GpuTracer {
             &gpu_scene.bindings(&sums, &dropped),
             size_of::<layout::Batch>() as u32,
         )?;
-        Ok(GpuTracer { kernel, _scene: gpu_scene, sums, dropped, readback, device: device.clone() })
+        Ok(GpuTracer { kernel, scene: gpu_scene, sums, dropped, readback, device: device.clone() })
+    }
+}
+
+impl SceneTracer for GpuTracer {
+    fn look(&mut self, sensor: &Sensor, film: &FilmSettings) -> Result<()> {
+        self.scene.look(sensor, film)
     }
 }
 
