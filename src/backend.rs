@@ -37,14 +37,31 @@ pub struct Request {
     pub device: Option<String>,
 }
 
-/// A tracer of a whole scene, whose camera can move.
+/// A tracer of a whole scene that can be changed: then it is as if it had been opened with what is new, but what rays are traced against stays, which
+/// is most of the work.
 pub trait SceneTracer: Tracer {
-    /// Looks at the scene from elsewhere, or with another film, as if it had been opened with them; much faster, because what rays are
-    /// traced against stays. The kind of projection has to be the one that it was opened with.
+    /// Looks at the scene from elsewhere, or with another film. The kind of projection has to be the one that it was opened with.
     ///
     /// # Errors
     /// If the device fails.
     fn look(&mut self, sensor: &Sensor, film: &FilmSettings) -> Result<()>;
+
+    /// Takes another integrator.
+    ///
+    /// # Errors
+    /// If its paths never end, or the device fails.
+    fn integrate(&mut self, integrator: &Integrator) -> Result<()>;
+}
+
+/// Refuses an integrator whose paths never end.
+pub(crate) fn check_ends(integrator: &Integrator) -> Result<()> {
+    match integrator {
+        Integrator::Path(estimator) if !estimator.ends() => Err(Error::Usage(format!(
+            "without extinction a path never ends: limit max_bounces to at most {}",
+            crate::scene::Estimator::MOST_BOUNCES
+        ))),
+        _ => Ok(()),
+    }
 }
 
 /// A tracer, ready to run.
@@ -94,14 +111,7 @@ pub struct DeviceReport {
 /// If the request names a device or backend that is not there, the scene does not fit it, or its estimator has paths that
 /// never end ([`Estimator::ends`](crate::scene::Estimator::ends)).
 pub fn open(scene: &Scene, request: &Request) -> Result<Opened> {
-    if let Integrator::Path(estimator) = &scene.integrator
-        && !estimator.ends()
-    {
-        return Err(Error::Usage(format!(
-            "without extinction a path never ends: limit max_bounces to at most {}",
-            crate::scene::Estimator::MOST_BOUNCES
-        )));
-    }
+    check_ends(&scene.integrator)?;
     if request.backend == Some(Backend::Cpu) {
         if let Some(device) = &request.device {
             return Err(Error::Usage(format!("--device {device} has no meaning with --backend cpu")));

@@ -6,8 +6,8 @@ use crate::Result;
 use crate::accel::Geometry;
 use crate::bvh::MeshBvh;
 use crate::scene::{
-    EmissiveTriangle, Environment, EnvironmentDistribution, Integrator, Luminaire, LuminaireTable, Material,
-    FilmSettings, Projection, SampledLuminaire, Scene, Sensor, Texture, widen,
+    EmissiveTriangle, Environment, EnvironmentDistribution, FilmSettings, Integrator, Luminaire, LuminaireTable,
+    Material, Projection, SampledLuminaire, Scene, Sensor, Texture, widen,
 };
 use ash::vk;
 use bytemuck::Zeroable;
@@ -75,6 +75,13 @@ impl GpuScene {
         self.frame.write(&[self.frame_data])
     }
 
+    /// Puts another integrator in the place of the present one; the kernel has to be made again, with the constants of `model`.
+    pub(super) fn integrate(&mut self, integrator: &Integrator) -> Result<()> {
+        self.model.integrator = *integrator;
+        estimate(&mut self.frame_data, integrator);
+        self.frame.write(&[self.frame_data])
+    }
+
     /// Bindings 0 to 13, of which 7 and 8 are the caller's.
     pub(super) fn bindings<'a>(&'a self, seven: &'a Buffer, eight: &'a Buffer) -> Vec<Binding<'a>> {
         let [intersector, triangles, normals, objects, uvs] = self.geometry.bindings();
@@ -103,28 +110,32 @@ fn vec4(v: Vec3, w: f64) -> [f32; 4] {
 }
 
 fn frame(scene: &Scene, table: &LuminaireTable) -> layout::Frame {
-    let (ambient, max_bounces, albedo_threshold) = match scene.integrator {
-        Integrator::Simple { ambient } => (ambient, 0, 0.0),
-        Integrator::Path(estimator) => {
-            (Vec3::ZERO, estimator.max_bounces.unwrap_or(u32::MAX), estimator.albedo_threshold.unwrap_or(0.0))
-        }
-    };
     let (radiance, rotation) = scene.environment.as_ref().map_or((Vec3::ZERO, 0.0), |e| (e.radiance, e.rotation));
     let (environment_width, environment_height) = table.environment.as_ref().map_or((1, 1), |e| (e.width, e.height));
     let mut frame = layout::Frame {
-        ambient: vec4(ambient, 0.0),
         environment: vec4(radiance, table.environment_probability()),
         seed: scene.settings.seed,
         luminaire_count: table.entries.len() as u32,
-        max_bounces,
-        albedo_threshold,
         environment_width,
         environment_height,
         environment_rotation: (f64::from(rotation) / 360.0).rem_euclid(1.0) as f32,
         ..Zeroable::zeroed()
     };
     aim(&mut frame, &scene.sensor, &scene.film);
+    estimate(&mut frame, &scene.integrator);
     frame
+}
+
+/// Puts the integrator's numbers into a frame.
+fn estimate(frame: &mut layout::Frame, integrator: &Integrator) {
+    let (ambient, max_bounces, albedo_threshold) = match *integrator {
+        Integrator::Simple { ambient } => (ambient, 0, 0.0),
+        Integrator::Path(estimator) => {
+            (Vec3::ZERO, estimator.max_bounces.unwrap_or(u32::MAX), estimator.albedo_threshold.unwrap_or(0.0))
+        }
+    };
+    frame.ambient = vec4(ambient, 0.0);
+    (frame.max_bounces, frame.albedo_threshold) = (max_bounces, albedo_threshold);
 }
 
 /// Puts the camera and the film into a frame.

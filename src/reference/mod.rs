@@ -26,10 +26,10 @@ mod tree;
 pub mod warp;
 
 use crate::Result;
-use crate::backend::SceneTracer;
+use crate::backend::{SceneTracer, check_ends};
 use crate::film::{Batch, MOST_RADIANCE, PixelSum, Rays, SampleId};
 use crate::render::{Traced, Tracer};
-use crate::scene::{FilmSettings, LuminaireTable, Scene, Sensor, widen};
+use crate::scene::{FilmSettings, Integrator, LuminaireTable, Scene, Sensor, widen};
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
 use tree::Trees;
@@ -102,6 +102,12 @@ impl SceneTracer for Reference {
     fn look(&mut self, sensor: &Sensor, film: &FilmSettings) -> Result<()> {
         (self.scene.sensor, self.scene.film) = (sensor.clone(), *film);
         self.filter = filter_table(film);
+        Ok(())
+    }
+
+    fn integrate(&mut self, integrator: &Integrator) -> Result<()> {
+        check_ends(integrator)?;
+        self.scene.integrator = *integrator;
         Ok(())
     }
 }

@@ -248,7 +248,9 @@ mod tests {
                         }
                         Projection::Orthographic { height } => f64::from(height) / 2.0,
                     };
-                    assert!(to.dot(axes.up).abs() <= half * 1.0001 && to.dot(axes.right).abs() <= half * aspect * 1.0001);
+                    assert!(
+                        to.dot(axes.up).abs() <= half * 1.0001 && to.dot(axes.right).abs() <= half * aspect * 1.0001
+                    );
                 }
             }
         }

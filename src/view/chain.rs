@@ -118,8 +118,7 @@ impl Chain {
             .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED);
         let (to_write, to_show) = (vk::ImageLayout::TRANSFER_DST_OPTIMAL, vk::ImageLayout::PRESENT_SRC_KHR);
         let before = [barrier.dst_access_mask(vk::AccessFlags::TRANSFER_WRITE).new_layout(to_write)];
-        let after =
-            [barrier.src_access_mask(vk::AccessFlags::TRANSFER_WRITE).old_layout(to_write).new_layout(to_show)];
+        let after = [barrier.src_access_mask(vk::AccessFlags::TRANSFER_WRITE).old_layout(to_write).new_layout(to_show)];
         let whole = [vk::BufferImageCopy::default()
             .image_subresource(vk::ImageSubresourceLayers::default().aspect_mask(colour).layer_count(1))
             .image_extent(self.extent.into())];

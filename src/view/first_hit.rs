@@ -6,7 +6,7 @@ use crate::film::{Batch, PixelSum, Rays};
 use crate::reference::Reference;
 use crate::render::{Traced, Tracer};
 use crate::sampling::ray_salt;
-use crate::scene::{FilmSettings, Scene, Sensor};
+use crate::scene::{FilmSettings, Integrator, Scene, Sensor};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -60,6 +60,11 @@ impl SceneTracer for FirstHits {
     fn look(&mut self, sensor: &Sensor, film: &FilmSettings) -> Result<()> {
         self.width = film.width;
         self.reference.look(sensor, film)
+    }
+
+    fn integrate(&mut self, _: &Integrator) -> Result<()> {
+        // What is seen first does not depend on it.
+        Ok(())
     }
 }
 

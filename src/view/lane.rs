@@ -1,10 +1,10 @@
 //! A tracer at work for the window: coarse while the camera moves, finer at rest, and then better and better.
 
+use crate::Result;
 use crate::backend::SceneTracer;
 use crate::film::{ErrorEstimate, Film};
 use crate::render::{FIRST_BUDGET, Schedule, next_budget};
 use crate::scene::{FilmSettings, Sensor};
-use crate::Result;
 use std::time::Instant;
 
 /// Seconds that one batch should take: the window answers no later than that.

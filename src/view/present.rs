@@ -84,7 +84,8 @@ impl Presenter {
     /// # Errors
     /// If there is none, with the reason for each, or the driver fails.
     pub fn new(window: &Arc<Window>) -> Result<Self> {
-        let display = window.display_handle().map_err(|e| Error::NoDevice(format!("the window has no display: {e}")))?;
+        let display =
+            window.display_handle().map_err(|e| Error::NoDevice(format!("the window has no display: {e}")))?;
         let extensions = ash_window::enumerate_required_extensions(display.as_raw())
             .map_err(|e| Error::NoDevice(format!("Vulkan knows no such windows ({e}): {ADVICE}")))?;
         // SAFETY: ash-window gives the names of extensions, which are constants and NUL-terminated.
@@ -118,14 +119,16 @@ impl Presenter {
         family: u32,
         format: vk::SurfaceFormatKHR,
     ) -> Result<Self> {
-        let failed = |call, result: vk::Result| Error::Vulkan { call, device: name.clone(), reason: result.to_string() };
+        let failed =
+            |call, result: vk::Result| Error::Vulkan { call, device: name.clone(), reason: result.to_string() };
         let instance = &surface.instance.raw;
         let priorities = [1.0];
         let queues = [vk::DeviceQueueCreateInfo::default().queue_family_index(family).queue_priorities(&priorities)];
         let extensions = [khr::swapchain::NAME.as_ptr()];
         let info = vk::DeviceCreateInfo::default().queue_create_infos(&queues).enabled_extension_names(&extensions);
         // SAFETY: the device has this family and this extension (`way_to_present`), and `info` lives until the call returns.
-        let device = unsafe { instance.create_device(physical, &info, None) }.map_err(|e| failed("vkCreateDevice", e))?;
+        let device =
+            unsafe { instance.create_device(physical, &info, None) }.map_err(|e| failed("vkCreateDevice", e))?;
         // SAFETY: the family was asked for one queue above.
         let queue = unsafe { device.get_device_queue(family, 0) };
         let swapchains = khr::swapchain::Device::new(instance, &device);
@@ -176,7 +179,11 @@ impl Presenter {
 
     /// An error that names the call and the device.
     pub(super) fn error(&self, call: &'static str, result: vk::Result) -> Error {
-        Error::Vulkan { call, device: self.name.clone(), reason: format!("{result}; `luminaire render` needs no window") }
+        Error::Vulkan {
+            call,
+            device: self.name.clone(),
+            reason: format!("{result}; `luminaire render` needs no window"),
+        }
     }
 
     /// Shows what `fill` writes into rows of four bytes a pixel (blue first where it is told so), of the size it is given. False if
@@ -292,10 +299,8 @@ impl Presenter {
             device.queue_submit(self.queue, &submit, self.copied)?;
             self.surface.window.pre_present_notify();
             let (swapchains, indices) = ([chain.raw], [index]);
-            let info = vk::PresentInfoKHR::default()
-                .wait_semaphores(&done)
-                .swapchains(&swapchains)
-                .image_indices(&indices);
+            let info =
+                vk::PresentInfoKHR::default().wait_semaphores(&done).swapchains(&swapchains).image_indices(&indices);
             suboptimal |= self.swapchains.queue_present(self.queue, &info)?;
             Ok(suboptimal)
         }
@@ -348,15 +353,18 @@ fn way_to_present(
         .map(|(index, _)| index)
         .ok_or("none of its queues presents to it")?;
     // SAFETY: as above.
-    let can = unsafe { surface.calls.get_physical_device_surface_capabilities(device.raw, surface.raw) }.map_err(failed)?;
+    let can =
+        unsafe { surface.calls.get_physical_device_surface_capabilities(device.raw, surface.raw) }.map_err(failed)?;
     if !can.supported_usage_flags.contains(vk::ImageUsageFlags::TRANSFER_DST) {
         return Err("its swapchains cannot be copied to".into());
     }
     // SAFETY: as above.
-    let formats = unsafe { surface.calls.get_physical_device_surface_formats(device.raw, surface.raw) }.map_err(failed)?;
+    let formats =
+        unsafe { surface.calls.get_physical_device_surface_formats(device.raw, surface.raw) }.map_err(failed)?;
     let fits = |wanted: vk::Format| {
         formats.iter().find(|f| f.format == wanted && f.color_space == vk::ColorSpaceKHR::SRGB_NONLINEAR).copied()
     };
-    let format = FORMATS.iter().find_map(|(wanted, _)| fits(*wanted)).ok_or("it offers no sRGB picture of 8 bits a channel")?;
+    let format =
+        FORMATS.iter().find_map(|(wanted, _)| fits(*wanted)).ok_or("it offers no sRGB picture of 8 bits a channel")?;
     Ok((family, format))
 }

@@ -1,5 +1,6 @@
 //! The window: events in, pictures out.
 
+use super::Options;
 use super::camera::{self, Ball};
 use super::first_hit::FirstHit;
 use super::lane::Sight;
@@ -7,7 +8,6 @@ use super::overlay::Canvas;
 use super::picture::Shown;
 use super::present::Presenter;
 use super::worker::{Frame, Link, News, Order, Wanted, Worker};
-use super::Options;
 use crate::scene::{Projection, Sensor};
 use crate::{Error, Result};
 use glam::{DVec2, DVec3};
@@ -141,9 +141,9 @@ impl App {
             .with_title(format!("{} - luminaire", self.name))
             .with_inner_size(PhysicalSize::new(film.width, film.height))
             .with_min_inner_size(PhysicalSize::new(16, 16));
-        let window = event_loop
-            .create_window(attributes)
-            .map_err(|e| Error::NoDevice(format!("no window can be opened here: {e}; `luminaire render` needs none")))?;
+        let window = event_loop.create_window(attributes).map_err(|e| {
+            Error::NoDevice(format!("no window can be opened here: {e}; `luminaire render` needs none"))
+        })?;
         let window = Arc::new(window);
         self.presenter = Some(Presenter::new(&window)?);
         self.resized(window.inner_size());
@@ -247,7 +247,11 @@ impl App {
             && FLY.iter().any(|(key, _)| *key == code)
         {
             // A key that is held counts from its first step.
-            if pressed { self.input.keys.insert(code) } else { self.input.keys.remove(&code) };
+            if pressed {
+                self.input.keys.insert(code)
+            } else {
+                self.input.keys.remove(&code)
+            };
             return;
         }
         let pixels = self.wanted.sight.film;
@@ -345,7 +349,10 @@ impl ApplicationHandler<News> for App {
                     };
                     window.set_title(&format!("{}: {shown}{} - luminaire", self.name, frame.figures));
                 }
-                self.frame = Some(frame);
+                if self.frame.replace(frame).is_none() {
+                    // What was said while the window was black.
+                    self.message = None;
+                }
                 self.redraw();
             }
             News::Said(text) => {

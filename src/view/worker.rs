@@ -200,7 +200,7 @@ impl Worker {
                 match order {
                     Order::Quit => return Ok(()),
                     Order::NextBackend => self.next_backend(&wanted),
-                    Order::NextEstimator => self.next_estimator(&wanted),
+                    Order::NextEstimator => self.next_estimator()?,
                     Order::SaveCamera => self.save_camera(&wanted),
                     Order::SavePng | Order::SaveExr => saves.push(order),
                 }
@@ -276,22 +276,15 @@ impl Worker {
         }
     }
 
-    fn next_estimator(&mut self, wanted: &Wanted) {
-        let Some(present) = self.picture.as_ref().map(|picture| picture.backend) else { return };
-        let next = (self.estimator + 1) % self.estimators.len();
-        let (name, integrator) = self.estimators[next];
-        let before = std::mem::replace(&mut self.scene.integrator, integrator);
-        let device = self.request.device.clone().filter(|_| present != Backend::Cpu);
-        match self.tracing(wanted, &Request { backend: Some(present), device }) {
-            Ok(picture) => {
-                (self.picture, self.estimator) = (Some(picture), next);
-                (self.tell)(News::Said(format!("estimator: {name}")));
-            }
-            Err(error) => {
-                self.scene.integrator = before;
-                (self.tell)(News::Said(format!("not with the estimator {name}: {error}")));
-            }
-        }
+    fn next_estimator(&mut self) -> Result<()> {
+        let Some(picture) = &mut self.picture else { return Ok(()) };
+        self.estimator = (self.estimator + 1) % self.estimators.len();
+        let (name, integrator) = self.estimators[self.estimator];
+        self.scene.integrator = integrator;
+        picture.tracer.integrate(&integrator)?;
+        picture.lane.restart();
+        (self.tell)(News::Said(format!("estimator: {name}")));
+        Ok(())
     }
 
     /// The lane that is shown.
