@@ -25,6 +25,9 @@ const FORMATS: [(vk::Format, bool); 4] = [
     (vk::Format::R8G8B8A8_SRGB, false),
 ];
 
+/// Writes a picture of a size into rows of four bytes a pixel, blue first if it is told so.
+pub type Fill<'a> = dyn FnMut(&mut [u8], (u32, u32), bool) + 'a;
+
 /// A window and the device that fills it.
 pub struct Presenter {
     /// None before the first picture, and after anything has changed.
@@ -186,12 +189,11 @@ impl Presenter {
         }
     }
 
-    /// Shows what `fill` writes into rows of four bytes a pixel (blue first where it is told so), of the size it is given. False if
-    /// nothing can be shown now: the window has no size, or no image is free.
+    /// Shows what `fill` writes. False if nothing can be shown now: the window has no size, or no image is free.
     ///
     /// # Errors
     /// If the driver fails with anything but a change of the window.
-    pub fn show(&mut self, fill: &mut dyn FnMut(&mut [u8], (u32, u32), bool)) -> Result<bool> {
+    pub fn show(&mut self, fill: &mut Fill<'_>) -> Result<bool> {
         // A window may change again while all is made anew, but not forever.
         for _ in 0..8 {
             if self.chain.is_none() {
@@ -265,7 +267,7 @@ impl Presenter {
     }
 
     /// Fills an image and queues it for the window; true if the swapchain does not fit the window any more.
-    fn present(&mut self, fill: &mut dyn FnMut(&mut [u8], (u32, u32), bool)) -> ash::prelude::VkResult<bool> {
+    fn present(&mut self, fill: &mut Fill<'_>) -> ash::prelude::VkResult<bool> {
         let chain = self.chain.as_mut().expect("show() has made it");
         let (device, commands) = (&self.device, self.commands);
         let fences = [self.copied];
