@@ -55,11 +55,13 @@ const FLY: [(KeyCode, DVec3); 6] = [
 /// If there is no display or no device that presents to it, the window is too large for a film, or the tracer or the device fails.
 pub fn run(options: Options) -> Result<()> {
     let event_loop = EventLoop::<News>::with_user_event().build().map_err(|e| {
-        let reason = e.to_string();
+        let text = e.to_string();
+        // Without the place in winit's source that comes first.
+        let reason = text.rsplit_once(": ").filter(|_| text.starts_with("os error at ")).map_or(&text[..], |(_, r)| r);
         Error::NoDevice(format!(
             "no window can be opened here ({}): run it where there is a display (DISPLAY or WAYLAND_DISPLAY is set), \
              or use `luminaire render`, which needs none",
-            reason.trim()
+            reason.trim().trim_end_matches('.')
         ))
     })?;
     let wanted = Wanted {
