@@ -3,8 +3,8 @@
 #
 #   scripts/setup.sh build    Rust and a C linker
 #   scripts/setup.sh vulkan   a usable Vulkan device: the one that is there, else Mesa's lavapipe (a driver for CPUs)
-#   scripts/setup.sh test     what the tests want besides: lavapipe with ray query, glslc, the validation layers, and an
-#                             older lavapipe without ray query under target/drivers/
+#   scripts/setup.sh test     what the tests want besides: lavapipe with ray query, glslc, the validation layers, a virtual X
+#                             server, and an older lavapipe without ray query under target/drivers/
 #   scripts/setup.sh ci       the same, and pip for .ci/run
 #
 # It installs on Debian 12, Debian 13 and Ubuntu 24.04 (and what is like them); elsewhere it says what to install.
@@ -14,6 +14,8 @@ cd "$(dirname "$0")/.."
 readonly rust_needed=1.88
 # The first Mesa whose lavapipe has ray query in all three systems.
 readonly mesa_needed=25.0
+# A virtual X server, keys and a pointer for it, and the libraries that a window loads.
+readonly window_packages="xvfb xdotool libx11-xcb1 libxcursor1 libxi6 libxkbcommon-x11-0"
 readonly old_driver=target/drivers/mesa-22.3.6
 # Quiet; a new machine may still be at its own updates, so wait for its lock.
 readonly apt_options="-qq -o DPkg::Lock::Timeout=300 -o Dpkg::Use-Pty=0"
@@ -169,11 +171,11 @@ old_driver() {
 for_tests() {
     if ! has_apt; then
         say "on $(system) this script installs nothing. The tests want: the Vulkan loader, Mesa's lavapipe $mesa_needed or newer,"
-        say "glslc (often in a package named shaderc), and the Khronos validation layers. Those that lack theirs say SKIP."
+        say "glslc (often in a package named shaderc), the Khronos validation layers, Xvfb and xdotool. Those that lack theirs say SKIP."
         return
     fi
     local packages
-    mapfile -t packages < <(lavapipe_packages; missing glslc vulkan-validationlayers "$@")
+    mapfile -t packages < <(lavapipe_packages; missing glslc vulkan-validationlayers $window_packages "$@")
     if [ ${#packages[@]} != 0 ]; then install "${packages[@]}"; fi
     old_driver
 }

@@ -3,7 +3,7 @@
 use crate::gpu::{Device, GpuTracer, Instance, PhysicalDevice};
 use crate::reference::Reference;
 use crate::render::Tracer;
-use crate::scene::{Integrator, Scene};
+use crate::scene::{FilmSettings, Integrator, Scene, Sensor};
 use crate::{Error, Result};
 use std::time::Instant;
 
@@ -37,10 +37,37 @@ pub struct Request {
     pub device: Option<String>,
 }
 
+/// A tracer of a whole scene that can be changed: then it is as if it had been opened with what is new, but what rays are traced against stays, which
+/// is most of the work.
+pub trait SceneTracer: Tracer {
+    /// Looks at the scene from elsewhere, or with another film. The kind of projection has to be the one that it was opened with.
+    ///
+    /// # Errors
+    /// If the device fails.
+    fn look(&mut self, sensor: &Sensor, film: &FilmSettings) -> Result<()>;
+
+    /// Takes another integrator.
+    ///
+    /// # Errors
+    /// If its paths never end, or the device fails.
+    fn integrate(&mut self, integrator: &Integrator) -> Result<()>;
+}
+
+/// Refuses an integrator whose paths never end.
+pub(crate) fn check_ends(integrator: &Integrator) -> Result<()> {
+    match integrator {
+        Integrator::Path(estimator) if !estimator.ends() => Err(Error::Usage(format!(
+            "without extinction a path never ends: limit max_bounces to at most {}",
+            crate::scene::Estimator::MOST_BOUNCES
+        ))),
+        _ => Ok(()),
+    }
+}
+
 /// A tracer, ready to run.
 pub struct Opened {
     /// The tracer with the scene loaded.
-    pub tracer: Box<dyn Tracer>,
+    pub tracer: Box<dyn SceneTracer>,
     /// What was chosen.
     pub backend: Backend,
     /// Name of the device.
@@ -84,14 +111,7 @@ pub struct DeviceReport {
 /// If the request names a device or backend that is not there, the scene does not fit it, or its estimator has paths that
 /// never end ([`Estimator::ends`](crate::scene::Estimator::ends)).
 pub fn open(scene: &Scene, request: &Request) -> Result<Opened> {
-    if let Integrator::Path(estimator) = &scene.integrator
-        && !estimator.ends()
-    {
-        return Err(Error::Usage(format!(
-            "without extinction a path never ends: limit max_bounces to at most {}",
-            crate::scene::Estimator::MOST_BOUNCES
-        )));
-    }
+    check_ends(&scene.integrator)?;
     if request.backend == Some(Backend::Cpu) {
         if let Some(device) = &request.device {
             return Err(Error::Usage(format!("--device {device} has no meaning with --backend cpu")));
@@ -155,7 +175,7 @@ fn preferred(ray_query: bool, software: bool) -> (Backend, &'static str) {
 }
 
 /// How much we would like to run on a device: GPUs before software, discrete before integrated, ray queries first.
-fn rank(device_type: ash::vk::PhysicalDeviceType, ray_query: bool) -> (u8, bool) {
+pub(crate) fn rank(device_type: ash::vk::PhysicalDeviceType, ray_query: bool) -> (u8, bool) {
     use ash::vk::PhysicalDeviceType as Type;
     let kind = match device_type {
         Type::DISCRETE_GPU => 4,

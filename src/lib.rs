@@ -3,7 +3,7 @@
 //! A scene is plain data ([`scene`]). Two tracers turn it into radiance samples: the double-precision [`mod@reference`] and the
 //! GPU renderer ([`gpu`], [`accel`]: one GLSL kernel, on ray queries or on a compute-shader BVH). Both draw the same
 //! [`sampling`] numbers, so they are compared sample by sample. A [`film`] adds the samples up and knows how uncertain they are; [`render`]
-//! drives it all, and [`backend`] chooses who traces. [`measure`] compares pictures, and shows where methods fail.
+//! drives it all, and [`backend`] chooses who traces. [`view`] shows it in a window. [`measure`] compares pictures, and shows where methods fail.
 //!
 //! ```text
 //! scene file + OBJ/MTL ─ scene::load ─► Scene ─┬─► reference (f64) ───────────────┐
@@ -71,5 +71,6 @@ pub mod reference;
 pub mod render;
 pub mod sampling;
 pub mod scene;
+pub mod view;
 
 pub use error::{Error, Result};

@@ -13,6 +13,7 @@ pub mod render;
 mod replay;
 pub mod stability;
 mod stats;
+pub mod view;
 #[cfg(feature = "shaderc")]
 mod watch;
 
@@ -36,6 +37,7 @@ Examples:
   luminaire render scenes/cornell/cornell.toml
   luminaire render model.obj -o model.png -o model.exr --spp 256
   luminaire render model.obj -o model.png --checkpoint model.part.exr --resume
+  luminaire view model.obj
   luminaire compare model.exr reference.exr
   luminaire inspect model.obj
   luminaire devices
@@ -73,6 +75,24 @@ Exit codes:
   0  merged
   1  a file cannot be read or written
   2  wrong usage: samples are missing or doubled, a part is not finished, or of another render";
+
+const VIEW_EXAMPLES: &str = "\
+Examples:
+  luminaire view scenes/cornell/cornell.toml
+      a window of the size that the scene file says
+  luminaire view model.obj --width 1280 --height 720 --backend compute-bvh
+      another size, and our own BVH to begin with
+  luminaire view scenes/cornell/cornell.toml --spp 256 > camera.toml
+      the picture stops at 256 samples a pixel; C writes the camera to stdout, and beside it to cornell-camera-1.toml
+
+Files go to the current folder: <SCENE>-view-1.png, -2, ...; none is ever replaced.";
+
+/// Exit codes of `luminaire view`.
+const VIEW_EXIT_CODES: &str = "\
+Exit codes:
+  0    the window was closed
+  1    failure: a file, a scene, a device, no display; `error:` on stderr says what and what to do
+  2    wrong usage: an option, or options that do not go together";
 
 const COMPARE_EXAMPLES: &str = "\
 Examples:
@@ -137,6 +157,8 @@ pub enum Command {
     Render(RenderOptions),
     /// Join the parts of a render that --samples wrote.
     Merge(MergeOptions),
+    /// Show a scene in a window: the camera moves, and the picture gets better while it rests.
+    View(ViewOptions),
     /// Tell how far a picture is from a reference, and whether that is within limits.
     Compare(CompareOptions),
     /// List every Vulkan device, what it offers, and which backend it would run and why.
@@ -371,6 +393,46 @@ pub struct RenderOptions {
     /// A Vulkan device: its index in `luminaire devices`, or a part of its name [default: the best].
     #[arg(long, value_name = "INDEX|NAME", help_heading = "Device")]
     pub device: Option<String>,
+}
+
+/// What to look at, and how.
+#[derive(Debug, clap::Args)]
+#[command(after_help = format!("Keys and mouse:\n{}\n\n{VIEW_EXAMPLES}\n\n{VIEW_EXIT_CODES}", indented(luminaire::view::HELP)))]
+pub struct ViewOptions {
+    /// A scene file (.toml) or any OBJ file.
+    pub scene: PathBuf,
+
+    /// Width of the window in pixels [default: the scene's, or from --height at the scene's aspect ratio].
+    #[arg(long, value_name = "PIXELS", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(16..=16384), help_heading = "Window")]
+    pub width: Option<u32>,
+    /// Height of the window in pixels [default: the scene's, or from --width at the scene's aspect ratio].
+    #[arg(long, value_name = "PIXELS", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(16..=16384), help_heading = "Window")]
+    pub height: Option<u32>,
+    /// Exposure in stops to begin with: radiance times 2^STOPS [default: the scene's].
+    #[arg(long, value_name = "STOPS", allow_negative_numbers = true, value_parser = stops, help_heading = "Window")]
+    pub exposure: Option<f32>,
+
+    /// Leave the picture as it is after so many samples a pixel [default: it gets better without end].
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..), help_heading = "Quality")]
+    pub spp: Option<u32>,
+    /// Seed of the random numbers: the same seed gives the same picture [default: the scene's].
+    #[arg(long, value_name = "N", allow_negative_numbers = true, help_heading = "Quality")]
+    pub seed: Option<u32>,
+    #[command(flatten)]
+    pub estimator: estimator::EstimatorOptions,
+
+    /// What traces the rays to begin with.
+    #[arg(long, value_name = "NAME", default_value = "auto", help_heading = "Device")]
+    pub backend: BackendName,
+    /// The Vulkan device that traces: its index in `luminaire devices`, or a part of its name [default: the best]. The window is filled by the
+    /// best one that can.
+    #[arg(long, value_name = "INDEX|NAME", help_heading = "Device")]
+    pub device: Option<String>,
+}
+
+/// Each line of a text two spaces further to the right.
+fn indented(text: &str) -> String {
+    text.lines().map(|line| format!("  {line}").trim_end().to_owned()).collect::<Vec<_>>().join("\n")
 }
 
 /// `--backend`.

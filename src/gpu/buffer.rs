@@ -69,6 +69,13 @@ impl Buffer {
         let bytes: &[u8] = bytemuck::cast_slice(data);
         let usage = usage | vk::BufferUsageFlags::TRANSFER_DST;
         let buffer = Self::new(device, name, bytes.len() as u64, usage, MemoryLocation::GpuOnly)?;
+        buffer.write(data)?;
+        Ok(buffer)
+    }
+
+    /// Puts `data` at the start of a device-local buffer that was made by [`Buffer::upload`] with at least as much.
+    pub(crate) fn write<T: Pod>(&self, data: &[T]) -> Result<()> {
+        let (device, bytes) = (&self.device, bytemuck::cast_slice::<T, u8>(data));
         let size = (bytes.len() as u64).min(STAGING);
         let mut staging =
             Self::new(device, "staging", size, vk::BufferUsageFlags::TRANSFER_SRC, MemoryLocation::CpuToGpu)?;
@@ -77,14 +84,14 @@ impl Buffer {
             let copy = [vk::BufferCopy { src_offset: 0, dst_offset: index as u64 * STAGING, size: piece.len() as u64 }];
             commands::submit(device, "upload", |cmd| {
                 // SAFETY: both buffers are alive, and the ranges lie inside them.
-                unsafe { device.raw.cmd_copy_buffer(cmd, staging.raw, buffer.raw, &copy) };
+                unsafe { device.raw.cmd_copy_buffer(cmd, staging.raw, self.raw, &copy) };
                 // To whatever reads it in later submissions: shaders, uniform fetches, builds of acceleration structures.
                 let written = (vk::PipelineStageFlags::TRANSFER, vk::AccessFlags::TRANSFER_WRITE);
                 let any = (vk::PipelineStageFlags::ALL_COMMANDS, vk::AccessFlags::MEMORY_READ);
                 commands::barrier(device, cmd, written, any);
             })?;
         }
-        Ok(buffer)
+        Ok(())
     }
 
     /// A buffer that shaders read by structure; refused if it is beyond what the device can address in one piece

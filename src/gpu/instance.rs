@@ -22,17 +22,17 @@ pub fn validation_messages() -> usize {
 
 /// A Vulkan instance.
 pub struct Instance {
-    pub(super) raw: ash::Instance,
+    pub(crate) raw: ash::Instance,
     pub(super) debug_utils: bool,
     messenger: Option<(ext::debug_utils::Instance, vk::DebugUtilsMessengerEXT)>,
     // Last, so that the library stays loaded until everything else is gone.
-    _entry: ash::Entry,
+    pub(crate) entry: ash::Entry,
 }
 
 /// A device that the loader knows, with what it offers.
 pub struct PhysicalDevice {
     pub(super) instance: Arc<Instance>,
-    pub(super) raw: vk::PhysicalDevice,
+    pub(crate) raw: vk::PhysicalDevice,
     /// Index in the loader's order, as `--device` takes it.
     pub index: usize,
     /// Name of the device.
@@ -64,6 +64,14 @@ impl Instance {
     /// # Errors
     /// [`Error::NoDevice`] if there is no loader or no driver, with what to install.
     pub fn new() -> Result<Arc<Self>> {
+        Self::with_extensions(&[])
+    }
+
+    /// The same with extensions that the loader has to know.
+    ///
+    /// # Errors
+    /// As for [`Instance::new`], and if it does not know one of them.
+    pub(crate) fn with_extensions(wanted: &[&'static CStr]) -> Result<Arc<Self>> {
         // SAFETY: the loader found by the system's rules is trusted to be a Vulkan loader.
         let entry = unsafe { ash::Entry::load() }.map_err(|e| {
             Error::NoDevice(format!(
@@ -105,9 +113,16 @@ impl Instance {
         let debug_utils =
             validation || extensions.iter().any(|e| e.extension_name_as_c_str() == Ok(ext::debug_utils::NAME));
 
+        let known = |name: &&CStr| extensions.iter().any(|e| e.extension_name_as_c_str() == Ok(*name));
+        if let Some(missing) = wanted.iter().find(|name| !known(name)) {
+            let missing = missing.to_string_lossy();
+            return Err(Error::NoDevice(format!("no Vulkan driver here has {missing}: update or install one")));
+        }
+
         let application = vk::ApplicationInfo::default().application_name(c"luminaire").api_version(API_VERSION);
         let layer_names: Vec<_> = validation.then_some(VALIDATION_LAYER.as_ptr()).into_iter().collect();
-        let extension_names: Vec<_> = debug_utils.then_some(ext::debug_utils::NAME.as_ptr()).into_iter().collect();
+        let extension_names: Vec<_> =
+            debug_utils.then_some(ext::debug_utils::NAME).iter().chain(wanted).map(|name| name.as_ptr()).collect();
         let enables = [vk::ValidationFeatureEnableEXT::SYNCHRONIZATION_VALIDATION];
         let mut features = vk::ValidationFeaturesEXT::default().enabled_validation_features(&enables);
         let mut messenger_info = messenger_info();
@@ -120,9 +135,9 @@ impl Instance {
         }
         // SAFETY: `info` and what it points to live until the call returns; the names are layers and extensions listed above.
         let raw = unsafe { entry.create_instance(&info, None) }.map_err(|e| failed("vkCreateInstance", e))?;
-        let mut instance = Instance { raw, debug_utils, messenger: None, _entry: entry };
+        let mut instance = Instance { raw, debug_utils, messenger: None, entry };
         if validation {
-            let loader = ext::debug_utils::Instance::new(&instance._entry, &instance.raw);
+            let loader = ext::debug_utils::Instance::new(&instance.entry, &instance.raw);
             // SAFETY: the extension is enabled; the callback is a static function without user data.
             let messenger = unsafe { loader.create_debug_utils_messenger(&self::messenger_info(), None) }
                 .map_err(|e| failed("vkCreateDebugUtilsMessengerEXT", e))?;

@@ -6,8 +6,8 @@ use crate::Result;
 use crate::accel::Geometry;
 use crate::bvh::MeshBvh;
 use crate::scene::{
-    EmissiveTriangle, Environment, EnvironmentDistribution, Integrator, Luminaire, LuminaireTable, Material,
-    Projection, SampledLuminaire, Scene, Sensor, Texture, widen,
+    EmissiveTriangle, Environment, EnvironmentDistribution, FilmSettings, Integrator, Luminaire, LuminaireTable,
+    Material, Projection, SampledLuminaire, Scene, Sensor, Texture, widen,
 };
 use ash::vk;
 use bytemuck::Zeroable;
@@ -18,6 +18,8 @@ use std::sync::Arc;
 /// Bindings 0 to 6 and 9 to 13.
 pub(super) struct GpuScene {
     frame: Buffer,
+    /// What `frame` holds.
+    frame_data: layout::Frame,
     geometry: Geometry,
     materials: TexelBuffer,
     luminaires: TexelBuffer,
@@ -52,8 +54,10 @@ impl GpuScene {
             (Some(environment), Some(distribution)) => pack_environment(environment, distribution),
             _ => Default::default(),
         };
+        let frame_data = frame(scene, &table);
         Ok(GpuScene {
-            frame: Buffer::upload(device, "frame", &[frame(scene, &table)], vk::BufferUsageFlags::UNIFORM_BUFFER)?,
+            frame: Buffer::upload(device, "frame", &[frame_data], vk::BufferUsageFlags::UNIFORM_BUFFER)?,
+            frame_data,
             geometry,
             materials: TexelBuffer::new(device, "materials", &materials, vk::BufferUsageFlags::empty())?,
             luminaires: TexelBuffer::new(device, "luminaires", &luminaires, vk::BufferUsageFlags::empty())?,
@@ -63,6 +67,19 @@ impl GpuScene {
             environment_slots: texel("environment choice", &environment_slots)?,
             model,
         })
+    }
+
+    /// Puts another camera and film in the place of the present ones. The kind of projection has to stay: it is a part of the kernel.
+    pub(super) fn look(&mut self, sensor: &Sensor, film: &FilmSettings) -> Result<()> {
+        aim(&mut self.frame_data, sensor, film);
+        self.frame.write(&[self.frame_data])
+    }
+
+    /// Puts another integrator in the place of the present one; the kernel has to be made again, with the constants of `model`.
+    pub(super) fn integrate(&mut self, integrator: &Integrator) -> Result<()> {
+        self.model.integrator = *integrator;
+        estimate(&mut self.frame_data, integrator);
+        self.frame.write(&[self.frame_data])
     }
 
     /// Bindings 0 to 13, of which 7 and 8 are the caller's.
@@ -93,49 +110,56 @@ fn vec4(v: Vec3, w: f64) -> [f32; 4] {
 }
 
 fn frame(scene: &Scene, table: &LuminaireTable) -> layout::Frame {
-    let Sensor { position, target, up, projection, lens } = scene.sensor;
-    // In f64 like the reference: these are rounded once.
-    let forward = (target.as_dvec3() - position.as_dvec3()).normalize();
-    let right = forward.cross(up.as_dvec3()).normalize();
-    let true_up = right.cross(forward);
-    let aspect = f64::from(scene.film.width) / f64::from(scene.film.height);
-    let half = match projection {
-        Projection::Perspective { fov } => (f64::from(fov).to_radians() / 2.0).tan(),
-        Projection::Orthographic { height } => f64::from(height) / 2.0,
+    let (radiance, rotation) = scene.environment.as_ref().map_or((Vec3::ZERO, 0.0), |e| (e.radiance, e.rotation));
+    let (environment_width, environment_height) = table.environment.as_ref().map_or((1, 1), |e| (e.width, e.height));
+    let mut frame = layout::Frame {
+        environment: vec4(radiance, table.environment_probability()),
+        seed: scene.settings.seed,
+        luminaire_count: table.entries.len() as u32,
+        environment_width,
+        environment_height,
+        environment_rotation: (f64::from(rotation) / 360.0).rem_euclid(1.0) as f32,
+        ..Zeroable::zeroed()
     };
-    let (ambient, max_bounces, albedo_threshold) = match scene.integrator {
+    aim(&mut frame, &scene.sensor, &scene.film);
+    estimate(&mut frame, &scene.integrator);
+    frame
+}
+
+/// Puts the integrator's numbers into a frame.
+fn estimate(frame: &mut layout::Frame, integrator: &Integrator) {
+    let (ambient, max_bounces, albedo_threshold) = match *integrator {
         Integrator::Simple { ambient } => (ambient, 0, 0.0),
         Integrator::Path(estimator) => {
             (Vec3::ZERO, estimator.max_bounces.unwrap_or(u32::MAX), estimator.albedo_threshold.unwrap_or(0.0))
         }
     };
-    let (radiance, rotation) = scene.environment.as_ref().map_or((Vec3::ZERO, 0.0), |e| (e.radiance, e.rotation));
-    let (environment_width, environment_height) = table.environment.as_ref().map_or((1, 1), |e| (e.width, e.height));
-    let mut filter_table = [[0.0; 4]; 65];
-    for (knot, offset) in scene.film.filter.inverse_cdf(scene.film.filter_radius).into_iter().enumerate() {
-        filter_table[knot / 4][knot % 4] = offset;
-    }
-    layout::Frame {
-        position: vec4(position, 0.0),
-        forward: vec4(forward.as_vec3(), 0.0),
-        right: vec4((right * half * aspect).as_vec3(), 0.0),
-        up: vec4((true_up * half).as_vec3(), 0.0),
-        lens: lens.map_or([0.0, 1.0, 0.0, 0.0], |l| {
-            [l.radius, l.focus_distance, l.blades as f32, (f64::from(l.rotation) / 360.0).rem_euclid(1.0) as f32]
-        }),
-        ambient: vec4(ambient, 0.0),
-        environment: vec4(radiance, table.environment_probability()),
-        width: scene.film.width,
-        height: scene.film.height,
-        seed: scene.settings.seed,
-        luminaire_count: table.entries.len() as u32,
-        max_bounces,
-        albedo_threshold,
-        environment_width,
-        environment_height,
-        environment_rotation: (f64::from(rotation) / 360.0).rem_euclid(1.0) as f32,
-        padding: [0; 3],
-        filter_table,
+    frame.ambient = vec4(ambient, 0.0);
+    (frame.max_bounces, frame.albedo_threshold) = (max_bounces, albedo_threshold);
+}
+
+/// Puts the camera and the film into a frame.
+fn aim(frame: &mut layout::Frame, sensor: &Sensor, film: &FilmSettings) {
+    let Sensor { position, target, up, projection, lens } = *sensor;
+    // In f64 like the reference: these are rounded once.
+    let forward = (target.as_dvec3() - position.as_dvec3()).normalize();
+    let right = forward.cross(up.as_dvec3()).normalize();
+    let true_up = right.cross(forward);
+    let aspect = f64::from(film.width) / f64::from(film.height);
+    let half = match projection {
+        Projection::Perspective { fov } => (f64::from(fov).to_radians() / 2.0).tan(),
+        Projection::Orthographic { height } => f64::from(height) / 2.0,
+    };
+    frame.position = vec4(position, 0.0);
+    frame.forward = vec4(forward.as_vec3(), 0.0);
+    frame.right = vec4((right * half * aspect).as_vec3(), 0.0);
+    frame.up = vec4((true_up * half).as_vec3(), 0.0);
+    frame.lens = lens.map_or([0.0, 1.0, 0.0, 0.0], |l| {
+        [l.radius, l.focus_distance, l.blades as f32, (f64::from(l.rotation) / 360.0).rem_euclid(1.0) as f32]
+    });
+    (frame.width, frame.height) = (film.width, film.height);
+    for (knot, offset) in film.filter.inverse_cdf(film.filter_radius).into_iter().enumerate() {
+        frame.filter_table[knot / 4][knot % 4] = offset;
     }
 }
 

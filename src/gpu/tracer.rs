@@ -6,10 +6,11 @@ use super::scene::GpuScene;
 use super::shader::Shader;
 use super::{Buffer, Device, Kernel, layout};
 use crate::Result;
+use crate::backend::{SceneTracer, check_ends};
 use crate::film::{AovSum, Batch, PixelSum, Rays, SampleId, Tile};
 use crate::render::{Traced, Tracer};
 use crate::sampling::PARTS;
-use crate::scene::Scene;
+use crate::scene::{FilmSettings, Integrator, Scene, Sensor};
 use ash::vk;
 use gpu_allocator::MemoryLocation;
 use std::ops::Range;
@@ -71,23 +72,27 @@ impl GpuTracer {
             vk::BufferUsageFlags::TRANSFER_DST,
             MemoryLocation::GpuToCpu,
         )?;
-        let kernel = Kernel::new(
-            device,
-            Shader::path_trace(ray_query),
-            &gpu_scene.model.constants(),
-            &gpu_scene.bindings(&sums, &dropped),
-            size_of::<layout::Batch>() as u32,
-        )?;
-        Ok(GpuTracer {
-            kernel,
-            aov_kernel: None,
-            scene: gpu_scene,
-            ray_query,
-            sums,
-            dropped,
-            readback,
-            device: device.clone(),
-        })
+        let kernel = kernel(device, &gpu_scene, ray_query, &sums, &dropped)?;
+        Ok(GpuTracer { kernel, aov_kernel: None, scene: gpu_scene, ray_query, sums, dropped, readback, device: device.clone() })
+    }
+}
+
+/// The kernel for a scene's model, bound to its buffers.
+fn kernel(device: &Arc<Device>, scene: &GpuScene, ray_query: bool, sums: &Buffer, dropped: &Buffer) -> Result<Kernel> {
+    let (constants, bindings) = (scene.model.constants(), scene.bindings(sums, dropped));
+    Kernel::new(device, Shader::path_trace(ray_query), &constants, &bindings, size_of::<layout::Batch>() as u32)
+}
+
+impl SceneTracer for GpuTracer {
+    fn look(&mut self, sensor: &Sensor, film: &FilmSettings) -> Result<()> {
+        self.scene.look(sensor, film)
+    }
+
+    fn integrate(&mut self, integrator: &Integrator) -> Result<()> {
+        check_ends(integrator)?;
+        self.scene.integrate(integrator)?;
+        self.kernel = kernel(&self.device, &self.scene, self.ray_query, &self.sums, &self.dropped)?;
+        Ok(())
     }
 }
 

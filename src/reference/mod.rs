@@ -26,9 +26,10 @@ mod tree;
 pub mod warp;
 
 use crate::Result;
+use crate::backend::{SceneTracer, check_ends};
 use crate::film::{AovSum, Batch, MOST_RADIANCE, PixelSum, Rays, SampleId, Tile};
 use crate::render::{Traced, Tracer};
-use crate::scene::{LuminaireTable, Scene, widen};
+use crate::scene::{FilmSettings, Integrator, LuminaireTable, Scene, Sensor, widen};
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -80,9 +81,8 @@ impl Reference {
                 Instance { to_world, to_object, normal_to_world: to_object.matrix3.transpose() }
             })
             .collect();
-        let film = &scene.film;
-        let filter = if film.is_pixel_square() { vec![] } else { film.filter.inverse_cdf(film.filter_radius) };
-        Reference { scene: scene.clone(), instances, trees: None, luminaires: LuminaireTable::new(scene), filter }
+        let (luminaires, filter) = (LuminaireTable::new(scene), filter_table(&scene.film));
+        Reference { scene: scene.clone(), instances, trees: None, luminaires, filter }
     }
 
     /// World-space corners of a triangle of an object.
@@ -91,6 +91,25 @@ impl Reference {
         let to_world = &self.instances[object as usize].to_world;
         let vertices = mesh.triangles[triangle as usize].vertices;
         vertices.map(|v| to_world.transform_point3(mesh.positions[v as usize].as_dvec3()))
+    }
+}
+
+/// What [`Reference::filter`] holds.
+fn filter_table(film: &FilmSettings) -> Vec<f32> {
+    if film.is_pixel_square() { vec![] } else { film.filter.inverse_cdf(film.filter_radius) }
+}
+
+impl SceneTracer for Reference {
+    fn look(&mut self, sensor: &Sensor, film: &FilmSettings) -> Result<()> {
+        (self.scene.sensor, self.scene.film) = (sensor.clone(), *film);
+        self.filter = filter_table(film);
+        Ok(())
+    }
+
+    fn integrate(&mut self, integrator: &Integrator) -> Result<()> {
+        check_ends(integrator)?;
+        self.scene.integrator = *integrator;
+        Ok(())
     }
 }
 
