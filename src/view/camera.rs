@@ -8,6 +8,8 @@ use std::f64::consts::PI;
 const POLE: f64 = 0.01;
 /// No target is nearer than this part of the largest coordinate: `f32` must keep it distinct from the eye point.
 const NEAREST: f64 = 1e-5;
+/// No coordinate is larger: squares of such must stay far from the end of `f32`.
+const FARTHEST: f64 = 1e15;
 
 /// The axes of a sensor's picture.
 struct Axes {
@@ -36,13 +38,16 @@ impl Axes {
     }
 }
 
-/// A sensor with another eye point and target; as it was if the two would be one in single precision.
+/// A sensor with another eye point and target; as it was if single precision could not tell the two apart, or they would be too far away.
 fn placed(sensor: &Sensor, position: DVec3, target: DVec3) -> Sensor {
-    let near = NEAREST * position.abs().max(target.abs()).max_element();
-    if !(position.distance(target) > near.max(f64::from(f32::MIN_POSITIVE)) && target.is_finite()) {
-        return sensor.clone();
+    let reach = position.abs().max(target.abs()).max_element();
+    let nearest = (NEAREST * reach).max(f64::from(f32::MIN_POSITIVE));
+    // Also false for what is not a number.
+    if reach <= FARTHEST && position.distance(target) > nearest {
+        Sensor { position: position.as_vec3(), target: target.as_vec3(), ..sensor.clone() }
+    } else {
+        sensor.clone()
     }
-    Sensor { position: position.as_vec3(), target: target.as_vec3(), ..sensor.clone() }
 }
 
 /// Moves the eye point around the target: a pointer that goes `angles` radians to the right and down turns the scene along.

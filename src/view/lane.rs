@@ -4,6 +4,7 @@ use crate::Result;
 use crate::backend::SceneTracer;
 use crate::film::{ErrorEstimate, Film};
 use crate::render::{FIRST_BUDGET, Schedule, next_budget};
+use crate::sampling::PARTS;
 use crate::scene::{FilmSettings, Sensor};
 use std::time::Instant;
 
@@ -80,7 +81,8 @@ impl Lane {
         self.work = Some(Work {
             sight: sight.clone(),
             coarseness,
-            schedule: Schedule::of(&film, spp),
+            // One sample is enough where a finer picture follows.
+            schedule: Schedule::of(&film, if coarseness == 1 { spp } else { 1 }),
             film,
             before,
             rays: 0,
@@ -91,14 +93,15 @@ impl Lane {
         Ok(true)
     }
 
-    /// The finest resolution at which a pass takes no more than `seconds`.
+    /// The finest resolution at which the first pass takes no more than `seconds`: of one sample, or of the schedule's least number where others follow.
     fn coarseness_within(&self, seconds: f64, sight: &Sight) -> u32 {
         let samples = self.budget as f64 * seconds / BATCH_SECONDS;
         let pixels = |coarseness: u32| {
             let FilmSettings { width, height, .. } = sight.film;
             f64::from(width.div_ceil(coarseness)) * f64::from(height.div_ceil(coarseness))
         };
-        [1, 2, 4].into_iter().find(|coarseness| pixels(*coarseness) <= samples).unwrap_or(COARSEST)
+        let pass = |coarseness: u32| pixels(coarseness) * f64::from(if coarseness == 1 { PARTS } else { 1 });
+        [1, 2, 4].into_iter().find(|coarseness| pass(*coarseness) <= samples).unwrap_or(COARSEST)
     }
 
     /// Traces one batch; false if there is nothing left to do.
@@ -119,7 +122,7 @@ impl Lane {
     /// Whether there is something to see, and whether it is the quick picture of a new sight.
     pub fn ready(&self) -> Option<bool> {
         let work = self.work.as_ref().filter(|work| work.before.is_some() || work.film.least_samples() > 0)?;
-        Some(work.before.is_none() && work.film.most_samples() == 1)
+        Some(work.before.is_none() && work.film.most_samples() <= PARTS)
     }
 
     /// The film in the window's own resolution, once every pixel has a sample.
