@@ -4,7 +4,7 @@ use super::checkpoint::{self, Checkpoint};
 use super::progress::{Reporter, duration, percent};
 use super::stats::{Seconds, Stats};
 use super::{RenderOptions, print, tell};
-use luminaire::backend::{self, Backend, Opened, Request};
+use luminaire::backend::{self, Backend, Renderer, Request};
 use luminaire::film::{Batch, Film};
 use luminaire::measure::heat_map;
 use luminaire::part::Provenance;
@@ -165,7 +165,7 @@ impl Tracer for Losing<'_> {
 fn finish(
     options: &RenderOptions,
     scene: &Scene,
-    opened: &Opened,
+    opened: &Renderer,
     rendered: Rendered,
     checkpoint: Option<&Checkpoint<'_>>,
     mut seconds: Seconds,
@@ -237,7 +237,7 @@ fn finish(
 fn write(
     options: &RenderOptions,
     scene: &Scene,
-    opened: &Opened,
+    opened: &Renderer,
     rendered: &Rendered,
     seconds: &mut Seconds,
     written: &[PathBuf],
