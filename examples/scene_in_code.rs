@@ -20,7 +20,7 @@ fn main() -> luminaire::Result<()> {
         image_io::save(file.as_ref(), film, scene.settings.exposure)?;
         let apart = compare(&picture(film), &picture(reference), 0)?;
         let noise = film.error().map_or(f64::NAN, |error| error.rel_mse);
-        println!("{file}: relMSE {:.1e} against the reference, {noise:.1e} against the truth", apart.relmse);
+        println!("{file}: relMSE {:.1e} against the reference, estimated {noise:.1e} against the truth", apart.relmse);
     }
     Ok(())
 }
