@@ -42,12 +42,13 @@ check() {
     fi
 }
 
-render() { "$bin" render "$scene" --width 64 --backend "$backend" --quiet "$@"; }
+# Not a function: in the background that would be a shell, and the program its child, which a signal does not reach.
+render=("$bin" render "$scene" --width 64 --backend "$backend" --quiet)
 now() { date +%s%N; }
 
 cd "$work" || exit 1
 started=$(now)
-render --spp $spp -o whole.exr || { echo "error: the scene does not render on $backend at all"; exit 1; }
+"${render[@]}" --spp $spp -o whole.exr || { echo "error: the scene does not render on $backend at all"; exit 1; }
 alone=$((($(now) - started) / 1000000))
 
 # --- SIGKILL at random moments
@@ -56,7 +57,7 @@ while [ $killed -lt $kills ]; do
     rm -f c.exr killed.exr
     rounds=$((rounds + 1))
     while [ ! -e killed.exr ]; do
-        render --spp $spp -o killed.exr --checkpoint c.exr --checkpoint-every 0.05 --resume &
+        "${render[@]}" --spp $spp -o killed.exr --checkpoint c.exr --checkpoint-every 0.05 --resume &
         if [ $killed -lt $kills ]; then
             sleep "$(awk -v s=$RANDOM -v all=$alone 'BEGIN { printf "%.3f", 0.2 + s / 32768 * all / 2000 }')"
             if kill -KILL $! 2>/dev/null; then killed=$((killed + 1)); fi
@@ -73,31 +74,30 @@ check "nothing is left over of killed writes" "no temporary file" bash -c '! ls 
 # --- SIGTERM and Ctrl-C
 for signal in TERM INT; do
     rm -f c.exr s.exr
-    # A job in the background ignores SIGINT unless it is told not to.
-    (trap - INT; exec "$bin" render "$scene" --width 64 --backend "$backend" --quiet --spp $spp -o s.exr --checkpoint c.exr --checkpoint-every 0.1) &
+    "${render[@]}" --spp $spp -o s.exr --checkpoint c.exr --checkpoint-every 0.1 &
     while [ ! -e c.exr ] && kill -0 $! 2>/dev/null; do sleep 0.02; done
     kill -$signal $!
     wait $!
     code=$?
-    render --spp $spp -o s.exr --checkpoint c.exr --resume
+    "${render[@]}" --spp $spp -o s.exr --checkpoint c.exr --resume
     check "SIG$signal" "exit code $code, resumed to the same bits" bash -c "[ $code = 130 ] && cmp s.exr whole.exr"
 done
 
 # --- A device that is lost
 rm -f c.exr l.exr
-LUMINAIRE_LOSE_DEVICE_AFTER=6 "$bin" render "$scene" --width 64 --backend "$backend" --quiet --spp $spp -o l.exr --checkpoint c.exr 2>lost.log
+LUMINAIRE_LOSE_DEVICE_AFTER=6 "${render[@]}" --spp $spp -o l.exr --checkpoint c.exr 2>lost.log
 code=$?
 cp c.exr c-lost.exr
-render --spp $spp -o l.exr --checkpoint c.exr --resume
+"${render[@]}" --spp $spp -o l.exr --checkpoint c.exr --resume
 check "a lost device (simulated)" "exit code $code, resumed to the same bits" bash -c "[ $code = 3 ] && cmp l.exr whole.exr"
 cp c-lost.exr c.exr
 "$bin" render "$scene" --width 64 --backend cpu --quiet --spp $spp -o l.exr --checkpoint c.exr --resume
 check "the same, resumed on the reference" "RMSE below 1e-4" "$bin" compare l.exr whole.exr --max-rmse 1e-4
 
 # --- Parts
-render --samples 0..$((spp / 3)) -o p1.exr
-render --samples $((spp / 3))..$((spp * 3 / 4 + 1)) -o p2.exr
-render --samples $((spp * 3 / 4 + 1))..$spp -o p3.exr
+"${render[@]}" --samples 0..$((spp / 3)) -o p1.exr
+"${render[@]}" --samples $((spp / 3))..$((spp * 3 / 4 + 1)) -o p2.exr
+"${render[@]}" --samples $((spp * 3 / 4 + 1))..$spp -o p3.exr
 "$bin" merge p2.exr p3.exr p1.exr -o m1.exr >/dev/null
 "$bin" merge p3.exr p1.exr p2.exr -o m2.exr >/dev/null
 check "three parts, merged in two orders" "the same bits" cmp m1.exr m2.exr
@@ -111,21 +111,21 @@ if [ "${1:-}" != --short ]; then
     # --- Disks
     mkdir small
     if mount -t tmpfs -o size=4m none small 2>/dev/null; then
-        render --spp 16 -o small/p.exr --checkpoint small/c.exr
+        "${render[@]}" --spp 16 -o small/p.exr --checkpoint small/c.exr
         cp small/c.exr c-before.exr
         cp small/p.exr p-before.exr
         dd if=/dev/zero of=small/filler bs=64k 2>/dev/null
-        render --spp 64 -o small/p.exr --checkpoint small/c.exr --resume 2>full.log
+        "${render[@]}" --spp 64 -o small/p.exr --checkpoint small/c.exr --resume 2>full.log
         code=$?
         check "disk full" "exit code $code, the old files are intact" \
             bash -c "[ $code = 1 ] && cmp small/c.exr c-before.exr && cmp small/p.exr p-before.exr && grep -q 'No space left' full.log"
         rm small/filler
-        render --spp 64 -o small/p.exr --checkpoint small/c.exr --resume
-        render --spp 64 -o p64.exr
+        "${render[@]}" --spp 64 -o small/p.exr --checkpoint small/c.exr --resume
+        "${render[@]}" --spp 64 -o p64.exr
         check "with room again" "resumed to the same bits" cmp small/p.exr p64.exr
         mount -o remount,ro small
         cp small/c.exr c-before.exr
-        render --spp 128 -o p128.exr --checkpoint small/c.exr --resume 2>ro.log
+        "${render[@]}" --spp 128 -o p128.exr --checkpoint small/c.exr --resume 2>ro.log
         code=$?
         check "read-only folder" "exit code $code before it renders, the old file is intact" \
             bash -c "[ $code = 1 ] && cmp small/c.exr c-before.exr && [ ! -e p128.exr ]"

@@ -1,7 +1,9 @@
 //! The film: what a tracer measured, added up.
 
+mod aov;
 mod error;
 
+pub use aov::{AovSum, Aovs};
 pub use error::{ErrorEstimate, ErrorMap, INTERVAL_95, REL_MSE_FLOOR};
 
 use crate::sampling::PARTS;

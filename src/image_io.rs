@@ -11,7 +11,7 @@ pub use openexr::{Attribute, Exr, Values};
 pub(crate) use openexr::{read_channels, read_texts};
 pub use picture::{Picture, read};
 
-use crate::film::{ErrorEstimate, Film};
+use crate::film::{Aovs, ErrorEstimate, Film};
 use crate::{Error, Result};
 use image::{ExtendedColorType, ImageEncoder};
 use std::io::{BufWriter, Write};
@@ -89,24 +89,46 @@ pub fn check_writable(path: &Path) -> Result<()> {
 /// # Errors
 /// [`Error::Usage`] for an unknown ending, [`Error::Write`] if the system refuses; then nothing has changed at `path`.
 pub fn save(path: &Path, film: &Film, exposure: f32) -> Result<()> {
+    match Format::of(path)? {
+        Format::Exr => save_exr(path, film, &[], vec![]),
+        Format::Png | Format::Hdr => save_linear(path, film.width, film.height, &film.to_linear(), exposure),
+    }
+}
+
+/// Writes linear RGB, row by row from the top, to `path` in the format of its ending. `exposure` is in stops and changes a PNG only.
+///
+/// # Errors
+/// As [`save`].
+pub fn save_linear(path: &Path, width: u32, height: u32, linear: &[f32], exposure: f32) -> Result<()> {
     let format = Format::of(path)?;
-    let linear = film.to_linear();
-    let (width, height) = (film.width, film.height);
     write_atomically(path, |out| match format {
         Format::Png => image::codecs::png::PngEncoder::new(out).write_image(
-            &to_srgb8(&linear, exposure),
+            &to_srgb8(linear, exposure),
             width,
             height,
             ExtendedColorType::Rgb8,
         ),
-        Format::Exr => Ok(out.write_all(&encode_exr(film, &linear, &[], vec![])?)?),
+        Format::Exr => {
+            let exr = Exr { width, height, rgb: bytemuck::cast_slice(linear), error: None, more: &[], attributes: &[] };
+            Ok(out.write_all(&exr.encode().map_err(std::io::Error::other)?)?)
+        }
         Format::Hdr => image::codecs::hdr::HdrEncoder::new(out).write_image(
-            bytemuck::cast_slice(&before_truncation(&linear)),
+            bytemuck::cast_slice(&before_truncation(linear)),
             width,
             height,
             ExtendedColorType::Rgb32F,
         ),
     })
+}
+
+/// Writes a film as an EXR picture with the layers of its AOVs ([`Aovs::channels`]) and the number of samples, `samples`.
+///
+/// # Errors
+/// [`Error::Write`] if the system refuses; then nothing has changed at `path`.
+pub fn save_with_aovs(path: &Path, film: &Film, aovs: &Aovs) -> Result<()> {
+    let mut more = aovs.channels();
+    more.push(("samples".into(), Values::Integer(film.samples.clone())));
+    save_exr(path, film, &more, vec![])
 }
 
 /// Writes a film as an EXR picture with further channels and attributes.

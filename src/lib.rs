@@ -73,6 +73,8 @@
 pub mod accel;
 pub mod backend;
 pub mod bvh;
+#[cfg(feature = "denoise")]
+pub mod denoise;
 pub mod error;
 pub mod film;
 pub mod gpu;

@@ -8,10 +8,11 @@
 
 mod schedule;
 
-use crate::film::{Batch, ErrorEstimate, Film, PixelSum, SampleId};
+use crate::film::{AovSum, Aovs, Batch, ErrorEstimate, Film, PixelSum, SampleId, Tile};
 use crate::sampling::PARTS;
 use crate::{Error, Result};
 use schedule::{FIRST_BUDGET, Schedule, next_budget};
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
@@ -36,6 +37,13 @@ pub trait Tracer {
     /// # Errors
     /// If the device fails.
     fn trace(&mut self, batch: &Batch) -> Result<Traced>;
+
+    /// What the camera rays of these samples hit first, for every pixel of a tile of at most [`Tracer::max_sums`] / 2 pixels; rows from the
+    /// top.
+    ///
+    /// # Errors
+    /// If the device fails.
+    fn aovs(&mut self, tile: Tile, samples: Range<u32>) -> Result<Vec<AovSum>>;
 
     /// The most sums (pixels times groups) that one batch may ask for; at least [`PARTS`].
     fn max_sums(&self) -> usize;
@@ -298,6 +306,30 @@ pub fn resume(
     rendered
 }
 
+/// Camera rays of a pixel for its AOVs: enough for edges, and few against those of a picture.
+const AOV_SAMPLES: u32 = 64;
+
+/// What the camera sees first, in the first samples of a render, at most 64.
+///
+/// # Errors
+/// If the device fails.
+pub fn aovs(tracer: &mut dyn Tracer, (width, height): (u32, u32), samples: u32) -> Result<Aovs> {
+    let samples = samples.min(AOV_SAMPLES);
+    let mut sums = Vec::with_capacity(width as usize * height as usize);
+    // Pieces as short as a batch of a path tracer, by rule of thumb.
+    let pixels = (tracer.max_sums() / 2).min(1 << 16).max(1);
+    let rows = (pixels / width.max(1) as usize).max(1) as u32;
+    for y in (0..height).step_by(rows as usize) {
+        // A row may be longer than a piece; then its pieces follow each other.
+        let columns = if rows == 1 { width.min(pixels as u32) } else { width };
+        for x in (0..width).step_by(columns.max(1) as usize) {
+            let tile = Tile { x, y, width: columns.min(width - x), height: rows.min(height - y) };
+            sums.extend(tracer.aovs(tile, 0..samples)?);
+        }
+    }
+    Ok(Aovs { samples, sums })
+}
+
 /// How many samples to take before the error is looked at again: those that bring it from `relative` to `limit`, and a little more, but
 /// at most as many again as there are. The estimate of an error from few samples is not to be relied on.
 fn samples_to_reach(samples: u32, relative: f64, limit: f64) -> u32 {
@@ -359,6 +391,12 @@ mod tests {
             Ok(Traced { sums, dropped: vec![], device_seconds: Some(f64::from(samples) * self.sample_seconds) })
         }
 
+        fn aovs(&mut self, tile: Tile, samples: Range<u32>) -> Result<Vec<AovSum>> {
+            let pixel = |i: usize| tile.x + i as u32 % tile.width + (tile.y + i as u32 / tile.width) * self.width;
+            let sum = |i| AovSum { hits: pixel(i), depth: samples.len() as f32, ..AovSum::default() };
+            Ok((0..tile.pixels()).map(sum).collect())
+        }
+
         fn max_sums(&self) -> usize {
             self.max_sums
         }
@@ -390,6 +428,17 @@ mod tests {
             films.push(rendered.film);
         }
         assert!(films.iter().all(|film| *film == films[0]));
+    }
+
+    #[test]
+    fn aovs_come_in_the_order_of_the_pixels() {
+        for (size, max_sums) in [((37, 23), 1 << 20), ((37, 23), 100), ((37, 23), 10), ((3, 2), 4), ((1, 5), 4)] {
+            let mut fake = Fake::new(size.0, max_sums, 1.0);
+            let found = aovs(&mut fake, size, 1000).unwrap();
+            assert_eq!(found.samples, 64);
+            let pixels: Vec<u32> = found.sums.iter().map(|sum| sum.hits).collect();
+            assert_eq!(pixels, (0..size.0 * size.1).collect::<Vec<u32>>());
+        }
     }
 
     #[test]

@@ -59,6 +59,9 @@ pub fn check(options: &RenderOptions) -> Result<()> {
             "--samples renders a part, which only an EXR file holds: say which with -o PART.exr".into(),
         ));
     }
+    if options.aov && !options.output.iter().any(|path| is_exr(path)) {
+        return Err(Error::Usage("--aov adds layers, which only an EXR file holds: name one with -o FILE.exr".into()));
+    }
     let Some(path) = &options.checkpoint else { return Ok(()) };
     if !is_exr(path) {
         return Err(Error::Usage(format!("--checkpoint {}: the name must end in .exr", path.display())));

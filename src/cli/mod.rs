@@ -357,7 +357,8 @@ pub struct CompareOptions {
 }
 
 /// Options that mean nothing where nothing is rendered.
-const REPLAY_CONFLICTS: [&str; 8] = ["output", "error_map", "stats", "spp", "time", "noise", "samples", "checkpoint"];
+const REPLAY_CONFLICTS: [&str; 9] =
+    ["output", "error_map", "aov", "stats", "spp", "time", "noise", "samples", "checkpoint"];
 
 /// What to render, and how.
 #[derive(Debug, clap::Args)]
@@ -375,6 +376,14 @@ pub struct RenderOptions {
     /// Write a heat map of the estimated relative error of every pixel.
     #[arg(long, value_name = "FILE.png", help_heading = "Output")]
     pub error_map: Option<PathBuf>,
+    /// Give EXR files the layers albedo, N (normal) and Z (depth) of what the camera sees first, and the number of samples: for denoisers
+    /// and compositing.
+    #[arg(long, conflicts_with = "samples", help_heading = "Output")]
+    pub aov: bool,
+    /// Write a denoised picture, too. It has a bias that the estimated error does not know.
+    #[cfg(feature = "denoise")]
+    #[arg(long, value_name = "FILE", conflicts_with = "samples", help_heading = "Output")]
+    pub denoised: Option<PathBuf>,
     /// Write the figures of the run to a JSON file.
     #[arg(long, value_name = "FILE.json", help_heading = "Output")]
     pub stats: Option<PathBuf>,

@@ -5,12 +5,13 @@ use super::progress::{Reporter, duration, percent};
 use super::stats::{Seconds, Stats};
 use super::{RenderOptions, print, tell};
 use luminaire::backend::{self, Backend, Renderer, Request};
-use luminaire::film::{Batch, Film};
+use luminaire::film::{AovSum, Aovs, Batch, Film, Tile};
 use luminaire::measure::heat_map;
 use luminaire::part::Provenance;
-use luminaire::render::{End, Limits, Rendered, Traced, Tracer, resume};
+use luminaire::render::{End, Limits, Rendered, Traced, Tracer, aovs, resume};
 use luminaire::scene::{self, FilmSettings, Scene};
 use luminaire::{Error, Result, image_io, part};
+use std::ops::Range;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -104,16 +105,25 @@ fn trace(
         }
     };
     let mut tracer = Losing::perhaps(opened.tracer.as_mut())?;
-    let rendered = resume(&mut tracer, begun, limits, &mut watch, &STOP);
+    let mut rendered = resume(&mut tracer, begun, limits, &mut watch, &STOP);
     reporter.finish();
     if let (Some(wanted), least) = (spp, rendered.film.first_sample + rendered.film.least_samples())
         && least > wanted
     {
         say(&format!("the checkpoint already held more samples than were asked for: {least} a pixel"));
     }
+    // A device that has failed would only fail again.
+    let mut layers = None;
+    if wants_aovs(options) && !matches!(rendered.end, End::Failed(_)) {
+        let size = (rendered.film.width, rendered.film.height);
+        match aovs(&mut tracer, size, rendered.film.most_samples()) {
+            Ok(found) => layers = Some(found),
+            Err(error) => rendered.end = End::Failed(error),
+        }
+    }
     seconds.render = rendered.progress.seconds;
     seconds.device = rendered.device_seconds;
-    finish(options, scene, &opened, rendered, checkpoint.as_ref(), seconds, outputs, say)
+    finish(options, scene, &opened, rendered, layers, checkpoint.as_ref(), seconds, outputs, say)
 }
 
 /// A tracer whose device is lost after some batches: with LUMINAIRE_LOSE_DEVICE_AFTER, so that scripts can try what happens then.
@@ -151,6 +161,10 @@ impl Tracer for Losing<'_> {
         }
     }
 
+    fn aovs(&mut self, tile: Tile, samples: Range<u32>) -> Result<Vec<AovSum>> {
+        self.tracer.aovs(tile, samples)
+    }
+
     fn max_sums(&self) -> usize {
         self.tracer.max_sums()
     }
@@ -167,6 +181,7 @@ fn finish(
     scene: &Scene,
     opened: &Renderer,
     rendered: Rendered,
+    aovs: Option<Aovs>,
     checkpoint: Option<&Checkpoint<'_>>,
     mut seconds: Seconds,
     outputs: &[PathBuf],
@@ -193,7 +208,7 @@ fn finish(
     if black > 0 && !written.is_empty() {
         say(&format!("warning: {black} pixels have no sample and are black: the render ended during the first pass"));
     }
-    let done = write(options, scene, opened, &rendered, &mut seconds, written);
+    let done = write(options, scene, opened, &rendered, aovs.as_ref(), &mut seconds, written);
     WRITING.store(false, Ordering::SeqCst);
     if done.is_err() && kept {
         say("the samples are in the checkpoint; the same command with --resume writes the pictures again");
@@ -233,19 +248,30 @@ fn finish(
     }
 }
 
+/// Whether somebody asks for what the camera sees first.
+fn wants_aovs(options: &RenderOptions) -> bool {
+    #[cfg(feature = "denoise")]
+    if options.denoised.is_some() {
+        return true;
+    }
+    options.aov
+}
+
 /// Writes the pictures and the figures.
 fn write(
     options: &RenderOptions,
     scene: &Scene,
     opened: &Renderer,
     rendered: &Rendered,
+    aovs: Option<&Aovs>,
     seconds: &mut Seconds,
     written: &[PathBuf],
 ) -> Result<()> {
     let start = Instant::now();
     let provenance = options.samples.as_ref().map(|_| Provenance::of(scene));
-    let save = |path: &PathBuf| match (&provenance, image_io::Format::of(path)?) {
-        (Some(provenance), image_io::Format::Exr) => part::save(path, rendered, provenance),
+    let save = |path: &PathBuf| match (&provenance, aovs, image_io::Format::of(path)?) {
+        (Some(provenance), _, image_io::Format::Exr) => part::save(path, rendered, provenance),
+        (_, Some(aovs), image_io::Format::Exr) if options.aov => image_io::save_with_aovs(path, &rendered.film, aovs),
         _ => image_io::save(path, &rendered.film, scene.settings.exposure),
     };
     // Every file is tried: one that cannot be written must not cost the others.
@@ -255,6 +281,12 @@ fn write(
         let FilmSettings { width, height, .. } = scene.film;
         let [low, high] = heat_map::RELATIVE_ERRORS;
         image_io::save_png(path, &heat_map::heat_map(width, height, &errors.relative, low, high))?;
+    }
+    #[cfg(feature = "denoise")]
+    if let (Some(path), Some(aovs)) = (&options.denoised, aovs) {
+        let FilmSettings { width, height, .. } = scene.film;
+        let picture = luminaire::denoise::denoise(&rendered.film, aovs)?;
+        image_io::save_linear(path, width, height, &picture, scene.settings.exposure)?;
     }
     seconds.write = start.elapsed().as_secs_f64();
     if let Some(path) = &options.stats {
@@ -341,6 +373,13 @@ fn outputs(options: &RenderOptions) -> Result<Vec<PathBuf>> {
         }
         image_io::check_output(path)?;
     }
+    #[cfg(feature = "denoise")]
+    if let Some(path) = &options.denoised {
+        if outputs.contains(path) {
+            return Err(Error::Usage(format!("--denoised {}: the picture itself is written there", path.display())));
+        }
+        image_io::check_output(path)?;
+    }
     if let Some(path) = &options.error_map {
         if outputs.contains(path) {
             return Err(Error::Usage(format!("--error-map {}: the picture itself is written there", path.display())));
@@ -407,10 +446,18 @@ fn listen_for_interrupts(quiet: bool) -> Result<()> {
             });
         }
         if at_once {
-            std::process::exit(INTERRUPTED.into());
+            exit_now();
         }
     })
     .map_err(|e| Error::Usage(format!("cannot listen for Ctrl-C: {e}")))
+}
+
+/// Ends the process without the clean-up of libraries: a driver that is just being loaded does not survive that.
+fn exit_now() -> ! {
+    #[cfg(unix)]
+    signal_hook::low_level::exit(INTERRUPTED.into());
+    #[cfg(not(unix))]
+    std::process::exit(INTERRUPTED.into());
 }
 
 #[cfg(test)]
