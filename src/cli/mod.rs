@@ -3,10 +3,12 @@
 pub mod bench;
 mod checkpoint;
 pub mod compare;
+pub mod completions;
 pub mod devices;
 mod estimator;
 pub mod inspect;
 mod inspect_tables;
+pub mod man;
 pub mod merge;
 mod progress;
 pub mod render;
@@ -143,6 +145,55 @@ Exit codes:
   2    wrong usage
   130  interrupted; nothing is written";
 
+const DEVICES_HELP: &str = "\
+Examples:
+  luminaire devices
+      every device, what it offers, and the backend that `luminaire render` would take there
+  luminaire render model.obj --device llvmpipe
+      renders on the one whose name contains this
+
+Exit codes:
+  0  at least one device is usable
+  1  none is; what to install is told
+  2  wrong usage";
+
+const INSPECT_HELP: &str = "\
+Examples:
+  luminaire inspect scenes/textures/textures.toml
+      objects, materials, textures and luminaires, what the kernel will model, the memory that this takes, and every warning
+  luminaire inspect model.obj
+      the camera and the light that were found for it, too
+
+Exit codes:
+  0  the scene can be loaded, with or without warnings
+  1  it cannot: a file is missing or wrong; `error:` on stderr says where and what to do
+  2  wrong usage";
+
+const COMPLETIONS_HELP: &str = "\
+Examples:
+  luminaire completions bash > ~/.local/share/bash-completion/completions/luminaire
+      for yourself; for everyone: /usr/share/bash-completion/completions/luminaire
+  luminaire completions zsh > ~/.zfunc/_luminaire
+      with `fpath=(~/.zfunc $fpath)` before `compinit` in ~/.zshrc
+  luminaire completions fish > ~/.config/fish/completions/luminaire.fish
+
+Exit codes:
+  0  printed
+  1  standard output cannot be written
+  2  wrong usage: there is no script for this shell";
+
+const MAN_HELP: &str = "\
+Examples:
+  luminaire man | man -l -
+      reads the manual page
+  luminaire man ~/.local/share/man/man1
+      installs all of them for yourself: then `man luminaire-render`
+
+Exit codes:
+  0  printed or written
+  1  a page cannot be written
+  2  wrong usage";
+
 /// A path tracer on Vulkan: ray queries or a compute-shader BVH, with a double-precision reference.
 #[derive(Debug, clap::Parser)]
 #[command(version, about, after_help = format!("{EXAMPLES}{EXIT_CODES}"), subcommand_required = true)]
@@ -162,7 +213,7 @@ pub enum Command {
     /// Tell how far a picture is from a reference, and whether that is within limits.
     Compare(CompareOptions),
     /// List every Vulkan device, what it offers, and which backend it would run and why.
-    #[command(after_help = "Exit code 0 if at least one device is usable, 1 if none is.")]
+    #[command(after_help = DEVICES_HELP)]
     Devices,
     /// Show what was loaded from a scene, and every warning.
     Inspect(InspectOptions),
@@ -170,6 +221,27 @@ pub enum Command {
     Stability(StabilityOptions),
     /// Measure speed against accuracy: scenes, backends and estimators side by side, as a page, charts and numbers.
     Bench(BenchOptions),
+    /// Print a script with which a shell completes subcommands, options and their values.
+    Completions(CompletionsOptions),
+    /// Print the manual page, or write one page for each subcommand to a folder.
+    Man(ManOptions),
+}
+
+/// For which shell.
+#[derive(Debug, clap::Args)]
+#[command(after_help = COMPLETIONS_HELP)]
+pub struct CompletionsOptions {
+    /// The shell that will read the script.
+    pub shell: clap_complete::Shell,
+}
+
+/// Where to.
+#[derive(Debug, clap::Args)]
+#[command(after_help = MAN_HELP)]
+pub struct ManOptions {
+    /// The folder for luminaire.1, luminaire-render.1 and so on; it is made if it is missing [default: only luminaire.1, to standard output].
+    #[arg(value_name = "DIR")]
+    pub folder: Option<PathBuf>,
 }
 
 /// What to join.
@@ -263,6 +335,7 @@ pub struct StabilityOptions {
 
 /// What to inspect.
 #[derive(Debug, clap::Args)]
+#[command(after_help = INSPECT_HELP)]
 pub struct InspectOptions {
     /// A scene file (.toml) or any OBJ file.
     pub scene: PathBuf,
