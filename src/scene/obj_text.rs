@@ -4,7 +4,8 @@
 //! takes `l` lines for faces, and wants every vertex coloured if one is. So each line is checked here first, and `tobj` receives
 //! plain `v`, `vt`, `vn`, `usemtl` and `f` lines with absolute, valid indices.
 
-use super::obj_faces::Faces;
+use super::obj_faces::{Faces, Faults};
+use super::polygon::MOST_CORNERS;
 use super::text::Tally;
 use crate::{Error, Result};
 use glam::Vec3;
@@ -298,7 +299,7 @@ impl<'a> Scan<'a> {
         if lacks_uv && !self.out.without_uv.iter().any(|(material, _)| *material == self.material) {
             self.out.without_uv.push((self.material, line));
         }
-        self.faces.end_face(self.material as u32, self.smoothing_group);
+        self.faces.end_face(self.material as u32, self.smoothing_group, line);
         Ok(())
     }
 
@@ -343,13 +344,24 @@ impl<'a> Scan<'a> {
             Some(degrees) if !has_normals => self.faces.normals_by_angle(&self.positions, degrees),
             _ => self.faces.normals_by_group(&self.positions),
         };
-        self.out.faces = self.faces.text(self.totals, &made, &mut self.out.vertices);
+        let mut faults = Faults::default();
+        self.out.faces = self.faces.text(&self.positions, self.totals, &made, &mut self.out.vertices, &mut faults);
         let warnings = &mut self.out.warnings;
         if smooth.is_some() && has_normals {
             let path = self.path.display();
             warnings.push(format!("{path}: `smooth` is ignored: the file has vertex normals of its own (vn)"));
         }
         self.short_faces.warn(self.path, "a face with fewer than 3 corners is skipped", warnings);
+        let Faults { tangled, not_flat, too_large } = faults;
+        tangled.warn(
+            self.path,
+            "a polygon whose outline crosses or covers itself; its triangles are a guess",
+            warnings,
+        );
+        not_flat.warn(self.path, "a polygon whose corners do not lie in a plane; its triangles are a guess", warnings);
+        let too_large_what =
+            format!("a polygon of more than {MOST_CORNERS} corners that is not convex; it is cut as if it were");
+        too_large.warn(self.path, &too_large_what, warnings);
         let unknown = format!("a line with the keyword `{}`, which is not modelled, is skipped", self.unknown_keyword);
         self.unknown.warn(self.path, &unknown, warnings);
         self.dangling[1].warn(self.path, "a texture coordinate index, but the file has none; ignored", warnings);
