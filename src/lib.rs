@@ -64,6 +64,7 @@ pub mod film;
 pub mod gpu;
 pub mod image_io;
 pub mod measure;
+mod memory;
 pub mod reference;
 pub mod render;
 pub mod sampling;

@@ -3,7 +3,7 @@
 use super::polygon::{self, Cut, Fault};
 use super::text::Tally;
 use glam::{DVec3, Vec3};
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::fmt::Write;
 
 /// More faces than this at one point get no normal there by angle: each is compared with each.
@@ -69,16 +69,14 @@ impl Faces {
         }
         let mut normals = vec![None; self.corners.len()];
         for incidents in self.points(positions) {
-            let mut sums: Vec<(u32, DVec3)> = Vec::new();
+            let mut sums: BTreeMap<u32, DVec3> = BTreeMap::new();
             for at in incidents.iter().filter(|at| at.smoothing_group > 0) {
-                match sums.iter_mut().find(|(group, _)| *group == at.smoothing_group) {
-                    Some((_, sum)) => *sum += at.angle * at.normal,
-                    None => sums.push((at.smoothing_group, at.angle * at.normal)),
-                }
+                let part = at.angle * at.normal;
+                sums.entry(at.smoothing_group).and_modify(|sum| *sum += part).or_insert(part);
             }
             for at in &incidents {
-                let sum = sums.iter().find(|(group, _)| *group == at.smoothing_group);
-                normals[at.corner] = sum.and_then(|(_, sum)| sum.try_normalize()).map(DVec3::as_vec3);
+                let sum = sums.get(&at.smoothing_group);
+                normals[at.corner] = sum.and_then(|sum| sum.try_normalize()).map(DVec3::as_vec3);
             }
         }
         let mut first = 0;

@@ -218,7 +218,7 @@ mod tests {
 
     fn star(spikes: usize) -> Vec<DVec3> {
         let corner = |k: usize| {
-            let radius = if k % 2 == 0 { 2.0 } else { 0.5 };
+            let radius = [2.0, 0.5][k % 2];
             let (y, x) = (TAU * k as f64 / (2 * spikes) as f64).sin_cos();
             [radius * x, radius * y]
         };
