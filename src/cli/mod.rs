@@ -17,6 +17,7 @@ mod watch;
 use luminaire::Error;
 use luminaire::backend::Backend;
 use luminaire::measure::bench::{SECTIONS, check_estimator};
+use std::borrow::Cow;
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -52,6 +53,18 @@ Examples:
       until the estimated error is 2 %, but no longer than ten minutes; and where it is how large
 
 ";
+
+const INSPECT_HELP: &str = "\
+Examples:
+  luminaire inspect model.obj
+      triangles, materials, textures, luminaires, and what was guessed, dropped or scaled
+  luminaire inspect scene.toml | grep -A 99 ^warnings
+      the warnings alone
+
+Exit codes:
+  0  loaded, with or without warnings
+  1  a file cannot be read, a line of it is wrong, or nothing is left to trace; the message names file and line
+  2  wrong usage: an option, or a file that is neither .toml nor .obj";
 
 const COMPARE_EXAMPLES: &str = "\
 Examples:
@@ -120,6 +133,7 @@ pub enum Command {
     #[command(after_help = "Exit code 0 if at least one device is usable, 1 if none is.")]
     Devices,
     /// Show what was loaded from a scene, and every warning.
+    #[command(after_help = INSPECT_HELP)]
     Inspect(InspectOptions),
     /// Run methods over the ranges in which they can fail, on every backend here: charts, numbers, and a page.
     Stability(StabilityOptions),
@@ -375,16 +389,22 @@ fn stops(text: &str) -> Result<f32, String> {
 
 /// Says a line on stderr. A stderr that nobody reads is no reason to fail.
 pub fn tell(line: &str) {
-    let _ = writeln!(std::io::stderr(), "{line}");
+    let _ = writeln!(std::io::stderr(), "{}", harmless(line));
 }
 
 /// Prints a result on stdout. A reader that closes the pipe early (`| head`) is content with less.
 fn print(text: &str) -> luminaire::Result<()> {
     let mut out = std::io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+    match out.write_all(harmless(text).as_bytes()).and_then(|()| out.flush()) {
         Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(Error::write("standard output".as_ref(), e)),
         _ => Ok(()),
     }
+}
+
+/// A text without control characters: names come from files, and a terminal would obey.
+fn harmless(text: &str) -> Cow<'_, str> {
+    let control = |c: char| c.is_control() && c != '\n' && c != '\t';
+    if text.contains(control) { Cow::Owned(text.replace(control, "\u{fffd}")) } else { Cow::Borrowed(text) }
 }
 
 /// Rows with their columns aligned, each line indented by `indent` spaces.

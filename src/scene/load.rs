@@ -18,7 +18,7 @@ const LARGEST_COORDINATE: f64 = 1e18;
 /// [`Error::Usage`] for another ending; otherwise if a file cannot be read or is wrong, with file and line.
 pub fn load(path: &Path) -> Result<Scene> {
     let ending = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
-    let scene = match ending.as_str() {
+    let mut scene = match ending.as_str() {
         "toml" => toml::load(path)?,
         "obj" => preview::load(path)?,
         _ => {
@@ -28,6 +28,12 @@ pub fn load(path: &Path) -> Result<Scene> {
             )));
         }
     };
+    for warning in &mut scene.warnings {
+        // Names come from files, and a terminal would obey.
+        if warning.contains(char::is_control) {
+            *warning = warning.replace(char::is_control, "\u{fffd}");
+        }
+    }
     let (low, high) = scene.world_bounds();
     let largest = low.abs().max(high.abs()).max_element();
     if largest > LARGEST_COORDINATE {
@@ -134,6 +140,14 @@ impl Loader {
         let own = self.named[mesh as usize].get(name).copied();
         let any = || self.drafts.iter().position(|draft| draft.name == name).map(|index| index as u32);
         own.or_else(any).or_else(|| self.define(name))
+    }
+
+    /// The names that [`Loader::material`] knows, for a message.
+    pub(super) fn material_names(&self) -> String {
+        let mut said = HashSet::new();
+        let names = self.drafts.iter().chain(&self.overrides).map(|draft| draft.name.as_str());
+        let names: Vec<_> = names.filter(|name| said.insert(*name)).collect();
+        listed(names.into_iter())
     }
 
     /// Applies the scene file's materials, fills in every default and loads the textures. Only materials that some triangle of

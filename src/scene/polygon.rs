@@ -70,10 +70,15 @@ pub(super) fn cut(corners: &[DVec3]) -> Cut {
     if corners.len() > MOST_CORNERS {
         return fan(Some(Fault::TooLarge));
     }
-    match sweep(&projected(corners, normal)) {
-        Some((triangles, true)) => Cut { triangles: Some(triangles), fault: flat },
-        Some((triangles, false)) => Cut { triangles: Some(triangles), fault: Some(Fault::Tangled) },
-        None => fan(Some(Fault::Tangled)),
+    match (sweep(&projected(corners, normal)), flat) {
+        (Some((triangles, true)), None) => Cut { triangles: Some(triangles), fault: None },
+        // A bent polygon may look simple from the front although corners are hidden there: the fan has them all.
+        (Some((triangles, true)), Some(_)) if triangles.len() == corners.len() - 2 => {
+            Cut { triangles: Some(triangles), fault: flat }
+        }
+        (_, Some(_)) => fan(flat),
+        (Some((triangles, false)), None) => Cut { triangles: Some(triangles), fault: Some(Fault::Tangled) },
+        (None, None) => fan(Some(Fault::Tangled)),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::load::Loader;
 use super::material::{Draft, DraftMaps, MapDraft};
-use super::text::{line_and_column, read_bytes};
+use super::text::{line_and_column, read_bytes, shortened};
 use super::texture::MapFile;
 use super::toml_tables::{LuminaireKind, LuminaireTable, MaterialTable, ObjectTable, Scale, SceneFile};
 use super::toml_values::Triple;
@@ -194,8 +194,9 @@ impl File<'_> {
             None => None,
             Some(name) => Some(loader.material(mesh, name.get_ref()).ok_or_else(|| {
                 let message = format!(
-                    "there is no material `{}`: neither an MTL file nor a [[material]] defines it",
-                    name.get_ref()
+                    "there is no material `{}`: neither an MTL file nor a [[material]] defines it; there are {}",
+                    shortened(name.get_ref()),
+                    loader.material_names()
                 );
                 self.error(name.span(), message)
             })?),
