@@ -170,6 +170,19 @@ fn a_scene_file_that_is_nested_deeply() {
     assert_eq!(folder.error("scene.toml").exit_code(), 1);
 }
 
+/// From a point of one of them the other fills half of all directions, or none.
+#[test]
+fn luminaires_that_lie_in_each_other() {
+    let text = format!("mtllib mesh.mtl\nusemtl m\n{TRIANGLE}f 1 2 3\nv 1 1 0\nf 2 4 3\nf 3 2 1\n");
+    let folder = obj(text).with("mesh.mtl", "newmtl m\nKd 0.5 0.5 0.5\nKe 1 1 1\n");
+    let film = format!("{SENSOR}[film]\nwidth = 64\nheight = 64\n[[object]]\nmesh = \"mesh.obj\"\n");
+    let scene = folder.with("scene.toml", film).load("scene.toml");
+    let tracer = luminaire::reference::Reference::new(&scene);
+    for sample in 0..16 {
+        assert!((0..64 * 64).all(|pixel| tracer.radiance(pixel, sample).0.is_finite()));
+    }
+}
+
 #[test]
 fn files_may_lie_anywhere_and_be_found_by_any_path() {
     let folder = scene("").with("deep/er/scene.toml", "[[object]]\nmesh = \"../../mesh.obj\"\n");
