@@ -80,6 +80,7 @@ pub mod film;
 pub mod gpu;
 pub mod image_io;
 pub mod measure;
+mod memory;
 pub mod part;
 pub mod reference;
 pub mod render;

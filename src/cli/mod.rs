@@ -22,6 +22,7 @@ mod watch;
 use luminaire::Error;
 use luminaire::backend::Backend;
 use luminaire::measure::bench::{SECTIONS, check_estimator};
+use std::borrow::Cow;
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -572,16 +573,22 @@ fn stops(text: &str) -> Result<f32, String> {
 
 /// Says a line on stderr. A stderr that nobody reads is no reason to fail.
 pub fn tell(line: &str) {
-    let _ = writeln!(std::io::stderr(), "{line}");
+    let _ = writeln!(std::io::stderr(), "{}", harmless(line));
 }
 
 /// Prints a result on stdout. A reader that closes the pipe early (`| head`) is content with less.
 fn print(text: &str) -> luminaire::Result<()> {
     let mut out = std::io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+    match out.write_all(harmless(text).as_bytes()).and_then(|()| out.flush()) {
         Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(Error::write("standard output".as_ref(), e)),
         _ => Ok(()),
     }
+}
+
+/// A text without control characters: names come from files, and a terminal would obey.
+fn harmless(text: &str) -> Cow<'_, str> {
+    let control = |c: char| c.is_control() && c != '\n' && c != '\t';
+    if text.contains(control) { Cow::Owned(text.replace(control, "\u{fffd}")) } else { Cow::Borrowed(text) }
 }
 
 /// Rows with their columns aligned, each line indented by `indent` spaces.
