@@ -73,7 +73,16 @@ impl GpuTracer {
             MemoryLocation::GpuToCpu,
         )?;
         let kernel = kernel(device, &gpu_scene, ray_query, &sums, &dropped)?;
-        Ok(GpuTracer { kernel, aov_kernel: None, scene: gpu_scene, ray_query, sums, dropped, readback, device: device.clone() })
+        Ok(GpuTracer {
+            kernel,
+            aov_kernel: None,
+            scene: gpu_scene,
+            ray_query,
+            sums,
+            dropped,
+            readback,
+            device: device.clone(),
+        })
     }
 }
 
