@@ -7,14 +7,15 @@
 use glam::{DVec2, DVec3};
 use i_triangle::i_overlay::core::fill_rule::FillRule;
 use i_triangle::i_overlay::core::overlay::IntOverlayOptions;
+use i_triangle::i_overlay::core::solver::Solver;
 use i_triangle::i_overlay::i_float::int::point::IntPoint;
-use i_triangle::int::custom::IntCustomTriangulatable;
+use i_triangle::int::triangulator::IntTriangulator;
 use i_triangle::int::validation::Validation;
 use std::collections::HashMap;
 use std::f64::consts::TAU;
 
-/// Most corners of a polygon that is cut other than as a fan: the time grows with up to their square, a few seconds here.
-pub(super) const MOST_CORNERS: usize = 1 << 16;
+/// Most corners of a polygon that is cut other than as a fan: the time grows with up to their square, to a second here.
+pub(super) const MOST_CORNERS: usize = 1 << 15;
 /// The larger side of a polygon in steps of the grid on which it is cut: much finer than single precision.
 const GRID: f64 = (1u64 << 40) as f64;
 /// Backward triangles of so small a part of the polygon's area are rounding.
@@ -140,7 +141,8 @@ fn sweep(corners: &[DVec2]) -> Option<(Vec<[u32; 3]>, bool)> {
         corner_at.entry((point.x, point.y)).or_insert(corner);
     }
     let how = Validation { fill_rule: FillRule::NonZero, options: IntOverlayOptions::keep_all_points() };
-    let found = points.custom_triangulate(how).into_triangulation::<u32>();
+    // The other solvers of the crate can take a gigabyte for the polygons that this one is slow for.
+    let found = IntTriangulator::<i64, u32>::new(points.len(), how, Solver::LIST).triangulate_contour(&points);
     let corner_of: Option<Vec<u32>> =
         found.points.iter().map(|point| corner_at.get(&(point.x, point.y)).copied()).collect();
     let corner_of = corner_of?;

@@ -82,9 +82,9 @@ fn polygons_that_make_no_sense_are_a_warning_with_their_line() {
 }
 
 #[test]
-fn a_polygon_of_a_hundred_thousand_corners() {
+fn polygons_of_many_corners() {
     // A comb, whose teeth a fan would fill.
-    let count = 25_000;
+    let count = 15_000;
     let mut corners = vec![[f64::from(count), -1.0, 0.0], [f64::from(count), 1.0, 0.0]];
     corners.extend((1..2 * count).rev().map(|k| [0.5 * f64::from(k), f64::from(k % 2), 0.0]));
     corners.push([0.0, -1.0, 0.0]);
@@ -92,8 +92,8 @@ fn a_polygon_of_a_hundred_thousand_corners() {
     let (total, sum) = areas(&scene);
     let expected = f64::from(count) * 1.5;
     assert!((total - expected).abs() < 1.0 && (sum - expected).abs() < 1.0, "{total} {sum}");
-    // Twice as many corners are not cut, but loaded.
+    // More corners are not cut, but loaded.
     let huge: Vec<_> = (0..100_000).map(|k| [f64::from(k), f64::from(k % 7), 0.0]).collect();
     let scene = polygon(&huge).load("mesh.obj");
-    warned(&scene, &["mesh.obj:100003", "65536 corners"]);
+    warned(&scene, &["mesh.obj:100003", "32768 corners"]);
 }
