@@ -7,7 +7,7 @@ VALIDATION := /usr/share/vulkan/explicit_layer.d/VkLayer_khronos_validation.json
 
 LONG_FLAG := $(if $(LONG),--long)
 
-.PHONY: help render gallery accuracy stability bench test setup build shaders lint
+.PHONY: help render gallery accuracy stability bench test fuzz setup build shaders lint
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-9s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -35,6 +35,11 @@ test: ## install what the tests want, then run them all
 	if [ -f $(VALIDATION) ] || [ "$$LUMINAIRE_REQUIRE_GPU" = 1 ]; then export LUMINAIRE_VALIDATION=1; \
 	else echo "SKIP: the Vulkan validation layer is not installed; its complaints are not tested"; fi; \
 	echo cargo test --release; cargo test --release
+
+fuzz: ## search for input that breaks the loader: TARGET=obj, mtl or scene, for SECONDS=1200 (wants cargo-fuzz: docs/reliability.md)
+	@mkdir -p fuzz/corpus/$(or $(TARGET),obj)
+	cd fuzz && RUSTC_BOOTSTRAP=1 cargo fuzz run --sanitizer none $(or $(TARGET),obj) corpus/$(or $(TARGET),obj) seeds/$(or $(TARGET),obj) \
+		-- -timeout=10 -rss_limit_mb=1024 -max_len=4096 -max_total_time=$(or $(SECONDS),1200)
 
 setup: build ## build, and see to a Vulkan device
 	@scripts/setup.sh vulkan

@@ -49,7 +49,9 @@ pub(super) fn read(path: &Path, smooth: Option<f32>) -> Result<Obj> {
             0 => "it has no face with 3 or more corners".to_owned(),
             n => format!("all of its {n} triangles have zero area"),
         };
-        return Err(Error::scene(path, format!("nothing to trace: {why}")));
+        // What was skipped may be why.
+        let skipped: String = warnings.iter().map(|warning| format!("\n  {warning}")).collect();
+        return Err(Error::scene(path, format!("nothing to trace: {why}{skipped}")));
     }
     if dropped > 0 {
         warnings.push(format!("{}: {dropped} zero-area triangle(s) dropped", path.display()));

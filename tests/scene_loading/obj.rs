@@ -196,6 +196,15 @@ fn a_mesh_without_triangles() {
 }
 
 #[test]
+fn a_mesh_without_triangles_says_what_was_skipped() {
+    let error = obj("v 0 0 0\nvt3 1\nf 1 1\n").error("mesh.obj").to_string();
+    assert!(
+        ["nothing to trace", "mesh.obj:2", "`vt3`", "mesh.obj:3", "fewer than 3"].iter().all(|w| error.contains(w)),
+        "{error}"
+    );
+}
+
+#[test]
 fn text_in_the_wrong_encoding() {
     let utf16: Vec<u8> = "\u{feff}v 0 0 0\n".encode_utf16().flat_map(u16::to_be_bytes).collect();
     let error = obj(utf16).error("mesh.obj");
