@@ -76,6 +76,9 @@ pub enum Error {
         /// The result code in words, with advice where there is any.
         reason: String,
     },
+    /// The denoiser failed (only with the `denoise` feature).
+    #[error("Open Image Denoise failed: {0}")]
+    Denoise(String),
     /// A shader does not compile (only with the `shaderc` feature, which compiles at run time).
     #[error("shader {name} does not compile:\n{log}")]
     Shader {

@@ -1,7 +1,9 @@
 //! The film: what a tracer measured, added up.
 
+mod aov;
 mod error;
 
+pub use aov::{AovSum, Aovs};
 pub use error::{ErrorEstimate, ErrorMap, INTERVAL_95, REL_MSE_FLOOR};
 
 use crate::sampling::PARTS;
@@ -110,9 +112,11 @@ pub struct Film {
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
+    /// Number of the first sample of every pixel: 0, unless the film holds a later part of a render.
+    pub first_sample: u32,
     /// Radiance of each pixel in linear RGB, added up over the finite samples of each part.
     pub sums: Vec<[[f64; 3]; PARTS as usize]>,
-    /// Samples of each pixel, from the first one. They differ between pixels where a render ended in the middle of a pass.
+    /// Samples of each pixel, from `first_sample` on. They differ between pixels where a render ended in the middle of a pass.
     pub samples: Vec<u32>,
     /// How many of them were not finite and are left out, by pixel and part, where there are any.
     pub dropped: BTreeMap<(usize, usize), u32>,
@@ -126,7 +130,8 @@ impl Film {
     pub fn new(width: u32, height: u32) -> Result<Self> {
         Film::check_size(width, height)?;
         let pixels = width as usize * height as usize;
-        let mut film = Film { width, height, sums: Vec::new(), samples: Vec::new(), dropped: BTreeMap::new() };
+        let mut film =
+            Film { width, height, first_sample: 0, sums: Vec::new(), samples: Vec::new(), dropped: BTreeMap::new() };
         let refused = |_| too_large(width, height, "what the system would give".into());
         film.sums.try_reserve_exact(pixels).map_err(refused)?;
         film.samples.try_reserve_exact(pixels).map_err(refused)?;
@@ -187,10 +192,29 @@ impl Film {
     /// How many finite samples each part of a pixel has.
     pub fn part_samples(&self, pixel: usize) -> [u32; PARTS as usize] {
         std::array::from_fn(|part| {
-            let samples = self.samples[pixel];
-            let taken = samples / PARTS + u32::from((part as u32) < samples % PARTS);
+            // Of the samples before `end`, how many belong to the part.
+            let before = |end: u32| end / PARTS + u32::from((part as u32) < end % PARTS);
+            let taken = before(self.first_sample + self.samples[pixel]) - before(self.first_sample);
             if self.dropped.is_empty() { taken } else { taken - self.dropped.get(&(pixel, part)).unwrap_or(&0) }
         })
+    }
+
+    /// Adds the samples of a film of the same size that go on where those of this film end.
+    ///
+    /// # Panics
+    /// If the sizes differ, or the other film's samples do not follow on those of every pixel.
+    pub fn append(&mut self, next: &Film) {
+        assert_eq!((self.width, self.height), (next.width, next.height), "films of one size");
+        for pixel in 0..self.pixels() {
+            assert_eq!(self.first_sample + self.samples[pixel], next.first_sample, "samples without a gap");
+            for (sum, more) in self.sums[pixel].as_flattened_mut().iter_mut().zip(next.sums[pixel].as_flattened()) {
+                *sum += more;
+            }
+            self.samples[pixel] += next.samples[pixel];
+        }
+        for (place, count) in &next.dropped {
+            *self.dropped.entry(*place).or_default() += count;
+        }
     }
 
     /// Mean radiance of a pixel by its index, `y * width + x`, in linear RGB; black if it has no sample.

@@ -7,10 +7,11 @@ mod openexr;
 mod pfm;
 mod picture;
 
-pub use openexr::{Attribute, Exr};
+pub use openexr::{Attribute, Exr, Values};
+pub(crate) use openexr::{read_channels, read_texts};
 pub use picture::{Picture, read};
 
-use crate::film::{ErrorEstimate, Film};
+use crate::film::{Aovs, ErrorEstimate, Film};
 use crate::{Error, Result};
 use image::{ExtendedColorType, ImageEncoder};
 use std::io::{BufWriter, Write};
@@ -88,39 +89,81 @@ pub fn check_writable(path: &Path) -> Result<()> {
 /// # Errors
 /// [`Error::Usage`] for an unknown ending, [`Error::Write`] if the system refuses; then nothing has changed at `path`.
 pub fn save(path: &Path, film: &Film, exposure: f32) -> Result<()> {
+    match Format::of(path)? {
+        Format::Exr => save_exr(path, film, &[], vec![]),
+        Format::Png | Format::Hdr => save_linear(path, film.width, film.height, &film.to_linear(), exposure),
+    }
+}
+
+/// Writes linear RGB, row by row from the top, to `path` in the format of its ending. `exposure` is in stops and changes a PNG only.
+///
+/// # Errors
+/// As [`save`].
+pub fn save_linear(path: &Path, width: u32, height: u32, linear: &[f32], exposure: f32) -> Result<()> {
     let format = Format::of(path)?;
-    let linear = film.to_linear();
-    let (width, height) = (film.width, film.height);
     write_atomically(path, |out| match format {
         Format::Png => image::codecs::png::PngEncoder::new(out).write_image(
-            &to_srgb8(&linear, exposure),
+            &to_srgb8(linear, exposure),
             width,
             height,
             ExtendedColorType::Rgb8,
         ),
         Format::Exr => {
-            let errors = film.error_map();
-            let mut attributes = vec![
-                ("samplesPerPixel", Attribute::Number(f64::from(film.least_samples()))),
-                ("droppedSamples", Attribute::Number(film.dropped.values().copied().map(f64::from).sum())),
-            ];
-            if let Some(ErrorEstimate { rmse, rel_mse, fireflies, .. }) = errors.as_ref().map(|errors| errors.total) {
-                attributes.push(("estimatedRMSE", Attribute::Number(rmse)));
-                attributes.push(("estimatedRelMSE", Attribute::Number(rel_mse)));
-                attributes.push(("fireflies", Attribute::Number(fireflies as f64)));
-            }
-            let rgb = bytemuck::cast_slice(&linear);
-            let error = errors.as_ref().map(|errors| &errors.standard_error[..]);
-            let bytes = Exr { width, height, rgb, error, attributes: &attributes }.encode();
-            Ok(out.write_all(&bytes.map_err(std::io::Error::other)?)?)
+            let exr = Exr { width, height, rgb: bytemuck::cast_slice(linear), error: None, more: &[], attributes: &[] };
+            Ok(out.write_all(&exr.encode().map_err(std::io::Error::other)?)?)
         }
         Format::Hdr => image::codecs::hdr::HdrEncoder::new(out).write_image(
-            bytemuck::cast_slice(&before_truncation(&linear)),
+            bytemuck::cast_slice(&before_truncation(linear)),
             width,
             height,
             ExtendedColorType::Rgb32F,
         ),
     })
+}
+
+/// Writes a film as an EXR picture with the layers of its AOVs ([`Aovs::channels`]) and the number of samples, `samples`.
+///
+/// # Errors
+/// [`Error::Write`] if the system refuses; then nothing has changed at `path`.
+pub fn save_with_aovs(path: &Path, film: &Film, aovs: &Aovs) -> Result<()> {
+    let mut more = aovs.channels();
+    more.push(("samples".into(), Values::Integer(film.samples.clone())));
+    save_exr(path, film, &more, vec![])
+}
+
+/// Writes a film as an EXR picture with further channels and attributes.
+///
+/// # Errors
+/// [`Error::Write`] if the system refuses; then nothing has changed at `path`.
+pub(crate) fn save_exr(
+    path: &Path,
+    film: &Film,
+    more: &[(String, Values)],
+    about: Vec<(&str, Attribute<'_>)>,
+) -> Result<()> {
+    let bytes = encode_exr(film, &film.to_linear(), more, about).map_err(|e| Error::write(path, e))?;
+    write_atomically(path, |out| out.write_all(&bytes))
+}
+
+/// The bytes of an EXR file: a film's means, their standard errors, and `more`.
+fn encode_exr<'a>(
+    film: &Film,
+    linear: &[f32],
+    more: &[(String, Values)],
+    mut attributes: Vec<(&'a str, Attribute<'a>)>,
+) -> std::io::Result<Vec<u8>> {
+    let errors = film.error_map();
+    attributes.push(("samplesPerPixel", Attribute::Number(f64::from(film.least_samples()))));
+    attributes.push(("droppedSamples", Attribute::Number(film.dropped.values().copied().map(f64::from).sum())));
+    if let Some(ErrorEstimate { rmse, rel_mse, fireflies, .. }) = errors.as_ref().map(|errors| errors.total) {
+        attributes.push(("estimatedRMSE", Attribute::Number(rmse)));
+        attributes.push(("estimatedRelMSE", Attribute::Number(rel_mse)));
+        attributes.push(("fireflies", Attribute::Number(fireflies as f64)));
+    }
+    let error = errors.as_ref().map(|errors| &errors.standard_error[..]);
+    let rgb = bytemuck::cast_slice(linear);
+    let exr = Exr { width: film.width, height: film.height, rgb, error, more, attributes: &attributes };
+    exr.encode().map_err(std::io::Error::other)
 }
 
 /// Writes `text` to `path`.
@@ -178,10 +221,35 @@ fn folder_of(path: &Path) -> PathBuf {
     }
 }
 
+/// How the names of the files end that are renamed once they are complete.
+const TEMPORARY_SUFFIX: &str = ".luminaire.tmp";
+
+/// How the names of those begin that are to become `path`. Short enough for a file system where the name itself is.
+fn temporary_prefix(path: &Path) -> String {
+    let name: String = path.file_name().unwrap_or_default().to_string_lossy().chars().take(40).collect();
+    format!(".{name}.")
+}
+
+/// Removes what a process left that was killed while it wrote `path`.
+pub fn remove_left_over(path: &Path) {
+    let prefix = temporary_prefix(path);
+    let Ok(entries) = std::fs::read_dir(folder_of(path)) else { return };
+    for entry in entries.flatten() {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        // What remains in the middle is the random part: without it, other files of similar names would match.
+        let middle = name.strip_prefix(&prefix).and_then(|rest| rest.strip_suffix(TEMPORARY_SUFFIX));
+        if middle.is_some_and(|middle| middle.len() == 6 && middle.chars().all(char::is_alphanumeric)) {
+            // Nobody waits for it: if it stays, it only takes room.
+            let _ = std::fs::remove_file(entry.path());
+        }
+    }
+}
+
 /// A new file in the folder of `path`, removed when dropped.
 fn create_beside(path: &Path) -> Result<tempfile::NamedTempFile> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".luminaire-").suffix(".tmp");
+    let prefix = temporary_prefix(path);
+    builder.prefix(&prefix).suffix(TEMPORARY_SUFFIX);
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;

@@ -59,11 +59,14 @@
 pub mod accel;
 pub mod backend;
 pub mod bvh;
+#[cfg(feature = "denoise")]
+pub mod denoise;
 pub mod error;
 pub mod film;
 pub mod gpu;
 pub mod image_io;
 pub mod measure;
+pub mod part;
 pub mod reference;
 pub mod render;
 pub mod sampling;

@@ -10,6 +10,7 @@ fn main() -> ExitCode {
     let done = match &args.command {
         cli::Command::Render(options) => cli::render::run(options),
         cli::Command::View(options) => cli::view::run(options),
+        cli::Command::Merge(options) => cli::merge::run(options),
         cli::Command::Compare(options) => cli::compare::run(options),
         cli::Command::Devices => cli::devices::run(),
         cli::Command::Inspect(options) => cli::inspect::run(&options.scene),

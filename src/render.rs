@@ -8,10 +8,11 @@
 
 mod schedule;
 
-use crate::film::{Batch, ErrorEstimate, Film, PixelSum, SampleId};
+use crate::film::{AovSum, Aovs, Batch, ErrorEstimate, Film, PixelSum, SampleId, Tile};
 use crate::sampling::PARTS;
 use crate::{Error, Result};
 pub(crate) use schedule::{FIRST_BUDGET, Schedule, next_budget};
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
@@ -37,6 +38,13 @@ pub trait Tracer {
     /// If the device fails.
     fn trace(&mut self, batch: &Batch) -> Result<Traced>;
 
+    /// What the camera rays of these samples hit first, for every pixel of a tile of at most [`Tracer::max_sums`] / 2 pixels; rows from the
+    /// top.
+    ///
+    /// # Errors
+    /// If the device fails.
+    fn aovs(&mut self, tile: Tile, samples: Range<u32>) -> Result<Vec<AovSum>>;
+
     /// The most sums (pixels times groups) that one batch may ask for; at least [`PARTS`].
     fn max_sums(&self) -> usize;
 
@@ -47,9 +55,9 @@ pub trait Tracer {
 /// When to end. Whichever limit is met first counts; without any, only `stop` ends a render.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Limits {
-    /// Samples a pixel.
+    /// Samples a pixel: the number of the sample before which to end.
     pub spp: Option<u32>,
-    /// Seconds of wall-clock time, met at the next end of a batch.
+    /// Seconds of wall-clock time, over all runs of a render, met at the next end of a batch.
     pub seconds: Option<f64>,
     /// Estimated relative error ([`ErrorEstimate::relative`](crate::film::ErrorEstimate::relative)), met when all pixels have equally
     /// many samples, at least [`LEAST_FOR_NOISE`].
@@ -62,6 +70,8 @@ pub const LEAST_FOR_NOISE: u32 = 8 * PARTS;
 /// How far a render is, told after each batch.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Progress {
+    /// Number of the first sample of every pixel.
+    pub first_sample: u32,
     /// Samples so far, over all pixels.
     pub samples: u64,
     /// Pixels of the film.
@@ -91,7 +101,8 @@ impl Progress {
 
     /// The part that is done, 0 to 1, by the limit that will be met first; 0 without limits.
     pub fn fraction(&self) -> f64 {
-        let by_samples = self.limits.spp.map_or(0.0, |spp| self.spp() / f64::from(spp));
+        let wanted = |spp: u32| f64::from(spp.saturating_sub(self.first_sample).max(1));
+        let by_samples = self.limits.spp.map_or(0.0, |spp| self.spp() / wanted(spp));
         let by_time = self.limits.seconds.map_or(0.0, |seconds| self.seconds / seconds);
         // The squared error falls with the number of samples.
         let by_noise = match (self.limits.noise, self.error) {
@@ -123,12 +134,12 @@ pub enum End {
     Failed(Error),
 }
 
-/// What a render did.
+/// What a render did so far: enough to go on with it.
 #[derive(Debug)]
 pub struct Rendered {
     /// The sums.
     pub film: Film,
-    /// Samples, rays and seconds at the end.
+    /// Samples, rays and seconds, over all runs.
     pub progress: Progress,
     /// How many samples were not finite and are left out.
     pub dropped: u64,
@@ -136,8 +147,72 @@ pub struct Rendered {
     pub dropped_samples: Vec<SampleId>,
     /// Seconds that the device was busy by its own clock; 0 if it has none.
     pub device_seconds: f64,
-    /// Why it ended.
+    /// The number of samples at which a limit of the noise is looked at next.
+    pub noise_aim: u32,
+    /// Why the last run ended.
     pub end: End,
+}
+
+impl Rendered {
+    /// Nothing yet of a picture of `width` by `height` pixels, whose samples will begin with number `first_sample`.
+    ///
+    /// # Errors
+    /// If the film does not fit into memory.
+    pub fn nothing((width, height): (u32, u32), first_sample: u32) -> Result<Self> {
+        let mut film = Film::new(width, height)?;
+        film.first_sample = first_sample;
+        let pixels = u64::from(width) * u64::from(height);
+        Ok(Rendered {
+            film,
+            progress: Progress { pixels, first_sample, ..Progress::default() },
+            dropped: 0,
+            dropped_samples: Vec::new(),
+            device_seconds: 0.0,
+            noise_aim: LEAST_FOR_NOISE,
+            end: End::Stopped,
+        })
+    }
+
+    /// Takes in what a tracer did.
+    fn add(&mut self, batch: &Batch, traced: &Traced) {
+        self.film.add(batch, &traced.sums);
+        self.dropped += traced.sums.iter().map(|s| u64::from(s.dropped)).sum::<u64>();
+        let room = DROPPED_NAMED.saturating_sub(self.dropped_samples.len());
+        self.dropped_samples.extend(traced.dropped.iter().take(room));
+        self.device_seconds += traced.device_seconds.unwrap_or(0.0);
+        self.progress.samples += samples_of(batch);
+        self.progress.rays += traced.sums.iter().map(|s| u64::from(s.rays.all)).sum::<u64>();
+        self.progress.shadow_rays += traced.sums.iter().map(|s| u64::from(s.rays.shadow)).sum::<u64>();
+    }
+
+    /// Adds a part whose samples go on where these end.
+    pub(crate) fn append(&mut self, next: &Rendered) {
+        self.film.append(&next.film);
+        self.dropped = self.dropped.saturating_add(next.dropped);
+        let room = DROPPED_NAMED.saturating_sub(self.dropped_samples.len());
+        self.dropped_samples.extend(next.dropped_samples.iter().take(room));
+        self.device_seconds += next.device_seconds;
+        self.progress.samples = self.progress.samples.saturating_add(next.progress.samples);
+        self.progress.rays = self.progress.rays.saturating_add(next.progress.rays);
+        self.progress.shadow_rays = self.progress.shadow_rays.saturating_add(next.progress.shadow_rays);
+        self.progress.seconds += next.progress.seconds;
+    }
+
+    /// Estimates the error and says whether it is below `limit`; if not, when to look again. Only where all pixels have
+    /// [`Rendered::noise_aim`] samples.
+    fn quiet_enough(&mut self, limit: f64) -> bool {
+        self.progress.error = self.film.error();
+        // No estimate at all: every sample was lost.
+        let relative = self.progress.error.map_or(f64::INFINITY, |error| error.relative());
+        if relative > limit {
+            self.noise_aim = samples_to_reach(self.noise_aim, relative, limit);
+        }
+        relative <= limit
+    }
+}
+
+fn samples_of(batch: &Batch) -> u64 {
+    batch.tile.pixels() as u64 * u64::from(batch.samples.end - batch.samples.start)
 }
 
 /// Seconds between two estimates of the error for the progress.
@@ -149,36 +224,48 @@ const ESTIMATE_SECONDS: f64 = 1.0;
 /// If the film does not fit into memory. A failure of the tracer is an [`End`], so that what was done is not lost.
 pub fn render(
     tracer: &mut dyn Tracer,
-    (width, height): (u32, u32),
+    size: (u32, u32),
     limits: Limits,
     progress: &mut dyn FnMut(&Progress),
     stop: &AtomicBool,
 ) -> Result<Rendered> {
-    let pixels = u64::from(width) * u64::from(height);
-    let mut rendered = Rendered {
-        film: Film::new(width, height)?,
-        progress: Progress { pixels, limits, ..Progress::default() },
-        dropped: 0,
-        dropped_samples: Vec::new(),
-        device_seconds: 0.0,
-        end: End::Samples,
-    };
+    Ok(resume(tracer, Rendered::nothing(size, 0)?, limits, &mut |rendered| progress(&rendered.progress), stop))
+}
+
+/// Goes on with a render until a limit is met or `stop` is set, calling `watch` after each batch.
+///
+/// A render that was ended and resumed gives the same picture as one that was not, to the last bit, if the limits and the tracer are the
+/// same: what the film holds tells which batches are left.
+pub fn resume(
+    tracer: &mut dyn Tracer,
+    mut rendered: Rendered,
+    limits: Limits,
+    watch: &mut dyn FnMut(&Rendered),
+    stop: &AtomicBool,
+) -> Rendered {
     let max_sums = tracer.max_sums();
-    let mut schedule = Schedule::new((width, height), limits.spp.unwrap_or(u32::MAX));
+    let mut schedule = Schedule::of(&rendered.film, limits.spp.unwrap_or(u32::MAX));
     let mut budget = FIRST_BUDGET;
+    let before = rendered.progress.seconds;
     let start = Instant::now();
     let mut next_estimate = ESTIMATE_SECONDS;
-    // Where the noise is looked at next.
-    let mut aim = LEAST_FOR_NOISE;
-    if limits.noise.is_some() {
-        schedule.aim(aim);
+    rendered.progress.limits = limits;
+    rendered.end = End::Samples;
+    if let Some(limit) = limits.noise {
+        // An earlier run may have had no such limit.
+        rendered.noise_aim = rendered.noise_aim.max(rendered.film.most_samples());
+        if schedule.pass_done() == Some(rendered.noise_aim) && rendered.quiet_enough(limit) {
+            rendered.end = End::Noise;
+            return rendered;
+        }
+        schedule.aim(rendered.noise_aim);
     }
     while let Some(batch) = schedule.next(budget, max_sums) {
         if stop.load(Ordering::Relaxed) {
             rendered.end = End::Stopped;
             break;
         }
-        if limits.seconds.is_some_and(|limit| start.elapsed().as_secs_f64() >= limit) {
+        if limits.seconds.is_some_and(|limit| before + start.elapsed().as_secs_f64() >= limit) {
             rendered.end = End::Time;
             break;
         }
@@ -191,42 +278,56 @@ pub fn render(
             }
         };
         let seconds = traced.device_seconds.unwrap_or_else(|| batch_start.elapsed().as_secs_f64());
-        let samples = batch.tile.pixels() as u64 * u64::from(batch.samples.end - batch.samples.start);
-        budget = next_budget(budget, samples, seconds, tracer.batch_seconds());
-        rendered.film.add(&batch, &traced.sums);
-        rendered.dropped += traced.sums.iter().map(|s| u64::from(s.dropped)).sum::<u64>();
-        let room = DROPPED_NAMED - rendered.dropped_samples.len();
-        rendered.dropped_samples.extend(traced.dropped.iter().take(room));
-        rendered.device_seconds += traced.device_seconds.unwrap_or(0.0);
-        rendered.progress.samples += samples;
-        rendered.progress.rays += traced.sums.iter().map(|s| u64::from(s.rays.all)).sum::<u64>();
-        rendered.progress.shadow_rays += traced.sums.iter().map(|s| u64::from(s.rays.shadow)).sum::<u64>();
-        rendered.progress.seconds = start.elapsed().as_secs_f64();
+        budget = next_budget(budget, samples_of(&batch), seconds, tracer.batch_seconds());
+        rendered.add(&batch, &traced);
+        rendered.progress.seconds = before + start.elapsed().as_secs_f64();
         let pass_done = schedule.pass_done();
-        let at_aim = limits.noise.is_some() && pass_done == Some(aim);
-        // Where nothing depends on it, only so often that it costs nothing.
-        if at_aim || pass_done.is_some() && start.elapsed().as_secs_f64() >= next_estimate {
-            let before = start.elapsed().as_secs_f64();
+        let noise = limits.noise.filter(|_| pass_done == Some(rendered.noise_aim));
+        let mut quiet = false;
+        if let Some(limit) = noise {
+            quiet = rendered.quiet_enough(limit);
+            schedule.aim(rendered.noise_aim);
+        } else if pass_done.is_some() && start.elapsed().as_secs_f64() >= next_estimate {
+            // Where nothing depends on it, only so often that it costs nothing.
+            let estimate = Instant::now();
             rendered.progress.error = rendered.film.error();
-            let now = start.elapsed().as_secs_f64();
-            next_estimate = now + ESTIMATE_SECONDS.max(20.0 * (now - before));
+            next_estimate =
+                start.elapsed().as_secs_f64() + ESTIMATE_SECONDS.max(20.0 * estimate.elapsed().as_secs_f64());
         }
-        progress(&rendered.progress);
-        if let Some(limit) = limits.noise.filter(|_| at_aim) {
-            // No estimate at all: every sample was lost.
-            let relative = rendered.progress.error.map_or(f64::INFINITY, |error| error.relative());
-            if relative <= limit {
-                rendered.end = End::Noise;
-                break;
-            }
-            aim = samples_to_reach(aim, relative, limit);
-            schedule.aim(aim);
+        watch(&rendered);
+        if quiet {
+            rendered.end = End::Noise;
+            break;
         }
     }
-    rendered.progress.seconds = start.elapsed().as_secs_f64();
+    rendered.progress.seconds = before + start.elapsed().as_secs_f64();
     // Also of what a render did that ended in the middle of a pass.
     rendered.progress.error = rendered.film.error();
-    Ok(rendered)
+    rendered
+}
+
+/// Camera rays of a pixel for its AOVs: enough for edges, and few against those of a picture.
+const AOV_SAMPLES: u32 = 64;
+
+/// What the camera sees first, in the first samples of a render, at most 64.
+///
+/// # Errors
+/// If the device fails.
+pub fn aovs(tracer: &mut dyn Tracer, (width, height): (u32, u32), samples: u32) -> Result<Aovs> {
+    let samples = samples.min(AOV_SAMPLES);
+    let mut sums = Vec::with_capacity(width as usize * height as usize);
+    // Pieces as short as a batch of a path tracer, by rule of thumb.
+    let pixels = (tracer.max_sums() / 2).min(1 << 16).max(1);
+    let rows = (pixels / width.max(1) as usize).max(1) as u32;
+    for y in (0..height).step_by(rows as usize) {
+        // A row may be longer than a piece; then its pieces follow each other.
+        let columns = if rows == 1 { width.min(pixels as u32) } else { width };
+        for x in (0..width).step_by(columns.max(1) as usize) {
+            let tile = Tile { x, y, width: columns.min(width - x), height: rows.min(height - y) };
+            sums.extend(tracer.aovs(tile, 0..samples)?);
+        }
+    }
+    Ok(Aovs { samples, sums })
 }
 
 /// How many samples to take before the error is looked at again: those that bring it from `relative` to `limit`, and a little more, but
@@ -290,6 +391,12 @@ mod tests {
             Ok(Traced { sums, dropped: vec![], device_seconds: Some(f64::from(samples) * self.sample_seconds) })
         }
 
+        fn aovs(&mut self, tile: Tile, samples: Range<u32>) -> Result<Vec<AovSum>> {
+            let pixel = |i: usize| tile.x + i as u32 % tile.width + (tile.y + i as u32 / tile.width) * self.width;
+            let sum = |i| AovSum { hits: pixel(i), depth: samples.len() as f32, ..AovSum::default() };
+            Ok((0..tile.pixels()).map(sum).collect())
+        }
+
         fn max_sums(&self) -> usize {
             self.max_sums
         }
@@ -321,6 +428,17 @@ mod tests {
             films.push(rendered.film);
         }
         assert!(films.iter().all(|film| *film == films[0]));
+    }
+
+    #[test]
+    fn aovs_come_in_the_order_of_the_pixels() {
+        for (size, max_sums) in [((37, 23), 1 << 20), ((37, 23), 100), ((37, 23), 10), ((3, 2), 4), ((1, 5), 4)] {
+            let mut fake = Fake::new(size.0, max_sums, 1.0);
+            let found = aovs(&mut fake, size, 1000).unwrap();
+            assert_eq!(found.samples, 64);
+            let pixels: Vec<u32> = found.sums.iter().map(|sum| sum.hits).collect();
+            assert_eq!(pixels, (0..size.0 * size.1).collect::<Vec<u32>>());
+        }
     }
 
     #[test]

@@ -1,11 +1,13 @@
 //! Arguments and the manner of speaking: results on stdout, everything else on stderr.
 
 pub mod bench;
+mod checkpoint;
 pub mod compare;
 pub mod devices;
 mod estimator;
 pub mod inspect;
 mod inspect_tables;
+pub mod merge;
 mod progress;
 pub mod render;
 mod replay;
@@ -27,6 +29,7 @@ Exit codes:
   0    done
   1    failure: a file, a scene, a device; `error:` on stderr says what and what to do
   2    wrong usage: an option, or options that do not go together
+  3    the device failed while it rendered; what had been rendered until then is written, and with --checkpoint, --resume goes on
   130  interrupted (Ctrl-C or SIGTERM); what had been rendered until then is written";
 
 const EXAMPLES: &str = "\
@@ -34,6 +37,7 @@ Examples:
   luminaire render scenes/cornell/cornell.toml
   luminaire render model.obj -o model.png -o model.exr --spp 256
   luminaire view model.obj
+  luminaire render model.obj -o model.png --checkpoint model.part.exr --resume
   luminaire compare model.exr reference.exr
   luminaire inspect model.obj
   luminaire devices
@@ -52,6 +56,10 @@ Examples:
       as many samples as 30 seconds allow, and the figures of the run
   luminaire render model.obj --noise 0.02 --time 600 --error-map noise.png
       until the estimated error is 2 %, but no longer than ten minutes; and where it is how large
+  luminaire render model.obj --spp 4096 -o model.exr --checkpoint model.part.exr --resume
+      goes on where it was, however it ended; the same command again after Ctrl-C, a crash or a power cut
+  luminaire render model.obj --samples 1024..2048 -o part-1.exr
+      one part of four, on one machine of four; `luminaire merge part-*.exr -o model.exr` joins them
 
 ";
 
@@ -72,6 +80,19 @@ Exit codes:
   0    the window was closed
   1    failure: a file, a scene, a device, no display; `error:` on stderr says what and what to do
   2    wrong usage: an option, or options that do not go together";
+
+const MERGE_HELP: &str = "\
+Examples:
+  luminaire merge part-*.exr -o picture.png -o picture.exr
+      the picture of a render that was divided by --samples 0..64, 64..128, ...
+
+The parts must be of the same scene, size, seed, estimator and version, and hold every sample from number 0 on once. The picture is the one of a single
+render, but for rounding (1e-6 of each number at most).
+
+Exit codes:
+  0  merged
+  1  a file cannot be read or written
+  2  wrong usage: samples are missing or doubled, a part is not finished, or of another render";
 
 const COMPARE_EXAMPLES: &str = "\
 Examples:
@@ -136,6 +157,8 @@ pub enum Command {
     Render(RenderOptions),
     /// Show a scene in a window: the camera moves, and the picture gets better while it rests.
     View(ViewOptions),
+    /// Join the parts of a render that --samples wrote.
+    Merge(MergeOptions),
     /// Tell how far a picture is from a reference, and whether that is within limits.
     Compare(CompareOptions),
     /// List every Vulkan device, what it offers, and which backend it would run and why.
@@ -147,6 +170,21 @@ pub enum Command {
     Stability(StabilityOptions),
     /// Measure speed against accuracy: scenes, backends and estimators side by side, as a page, charts and numbers.
     Bench(BenchOptions),
+}
+
+/// What to join.
+#[derive(Debug, clap::Args)]
+#[command(after_help = MERGE_HELP)]
+pub struct MergeOptions {
+    /// Files of `luminaire render --samples`, in any order.
+    #[arg(required = true, value_name = "PART")]
+    pub parts: Vec<PathBuf>,
+    /// A file to write; .png, .exr or .hdr says the format. May be given several times.
+    #[arg(short, long, required = true, value_name = "FILE")]
+    pub output: Vec<PathBuf>,
+    /// Exposure of a PNG in stops [default: that of the parts].
+    #[arg(long, value_name = "STOPS", allow_negative_numbers = true, value_parser = stops)]
+    pub exposure: Option<f32>,
 }
 
 /// What to measure, and what to compare it with.
@@ -268,7 +306,8 @@ pub struct CompareOptions {
 }
 
 /// Options that mean nothing where nothing is rendered.
-const REPLAY_CONFLICTS: [&str; 6] = ["output", "error_map", "stats", "spp", "time", "noise"];
+const REPLAY_CONFLICTS: [&str; 9] =
+    ["output", "error_map", "aov", "stats", "spp", "time", "noise", "samples", "checkpoint"];
 
 /// What to render, and how.
 #[derive(Debug, clap::Args)]
@@ -286,6 +325,14 @@ pub struct RenderOptions {
     /// Write a heat map of the estimated relative error of every pixel.
     #[arg(long, value_name = "FILE.png", help_heading = "Output")]
     pub error_map: Option<PathBuf>,
+    /// Give EXR files the layers albedo, N (normal) and Z (depth) of what the camera sees first, and the number of samples: for denoisers
+    /// and compositing.
+    #[arg(long, conflicts_with = "samples", help_heading = "Output")]
+    pub aov: bool,
+    /// Write a denoised picture, too. It has a bias that the estimated error does not know.
+    #[cfg(feature = "denoise")]
+    #[arg(long, value_name = "FILE", conflicts_with = "samples", help_heading = "Output")]
+    pub denoised: Option<PathBuf>,
     /// Write the figures of the run to a JSON file.
     #[arg(long, value_name = "FILE.json", help_heading = "Output")]
     pub stats: Option<PathBuf>,
@@ -303,6 +350,9 @@ pub struct RenderOptions {
     /// comes first.
     #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = noise, help_heading = "Quality")]
     pub noise: Option<f64>,
+    /// Render only samples number A to B - 1 of every pixel, as a part that `luminaire merge` joins with others; wants -o PART.exr.
+    #[arg(long, value_name = "A..B", value_parser = checkpoint::range, conflicts_with_all = ["spp", "time", "noise"], help_heading = "Quality")]
+    pub samples: Option<std::ops::Range<u32>>,
     /// Width in pixels [default: the scene's, or from --height at the scene's aspect ratio].
     #[arg(long, value_name = "PIXELS", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=65536), help_heading = "Quality")]
     pub width: Option<u32>,
@@ -314,6 +364,17 @@ pub struct RenderOptions {
     pub seed: Option<u32>,
     #[command(flatten)]
     pub estimator: estimator::EstimatorOptions,
+
+    /// Save the render there while it runs, when it ends, and on Ctrl-C or SIGTERM: an EXR file of the picture so far, and of all that
+    /// --resume needs.
+    #[arg(long, value_name = "FILE.exr", help_heading = "Long renders")]
+    pub checkpoint: Option<PathBuf>,
+    /// Seconds between two checkpoints.
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = seconds, requires = "checkpoint", help_heading = "Long renders")]
+    pub checkpoint_every: f64,
+    /// Go on from the checkpoint, on any backend or device; if there is none yet, start. Also gives a finished render more samples.
+    #[arg(long, requires = "checkpoint", help_heading = "Long renders")]
+    pub resume: bool,
 
     /// Trace one sample of one pixel again and print its path, instead of rendering; with --sample.
     #[arg(long, value_name = "X,Y", value_parser = pixel, requires = "sample", conflicts_with_all = REPLAY_CONFLICTS, help_heading = "Replay")]
@@ -401,7 +462,8 @@ impl BackendName {
 
 fn seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
-        Ok(seconds) if seconds > 0.0 && seconds.is_finite() => Ok(seconds),
+        // More than a thousand years, no clock counts.
+        Ok(seconds) if seconds > 0.0 && seconds < 3.2e10 => Ok(seconds),
         _ => Err("expected a number of seconds above 0, for example 30 or 0.5".into()),
     }
 }

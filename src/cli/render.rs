@@ -1,14 +1,17 @@
 //! `luminaire render`.
 
+use super::checkpoint::{self, Checkpoint};
 use super::progress::{Reporter, duration, percent};
 use super::stats::{Seconds, Stats};
 use super::{RenderOptions, print, tell};
 use luminaire::backend::{self, Backend, Opened, Request};
-use luminaire::film::Film;
+use luminaire::film::{AovSum, Aovs, Batch, Film, Tile};
 use luminaire::measure::heat_map;
-use luminaire::render::{End, Limits, Rendered, render};
+use luminaire::part::Provenance;
+use luminaire::render::{End, Limits, Rendered, Traced, Tracer, aovs, resume};
 use luminaire::scene::{self, FilmSettings, Scene};
-use luminaire::{Error, Result, image_io};
+use luminaire::{Error, Result, image_io, part};
+use std::ops::Range;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -25,6 +28,9 @@ static WRITING: AtomicBool = AtomicBool::new(false);
 
 /// The exit code of an interrupted run: 128 + SIGINT, as shells have it.
 const INTERRUPTED: u8 = 130;
+
+/// The exit code where a device failed while it rendered.
+const DEVICE_FAILED: u8 = 3;
 
 /// Loads, renders and writes. Everything that can be checked beforehand is.
 pub fn run(options: &RenderOptions) -> Result<ExitCode> {
@@ -67,6 +73,12 @@ fn trace(
     outputs: &[PathBuf],
     say: &dyn Fn(&str),
 ) -> Result<ExitCode> {
+    // Before a device is opened, which takes longer than to find a checkpoint that does not fit.
+    let begun = if options.pixel.is_some() {
+        Rendered::nothing((scene.film.width, scene.film.height), 0)?
+    } else {
+        checkpoint::begin(options, scene, say)?
+    };
     let start = Instant::now();
     let request = Request { backend: options.backend.backend(), device: options.device.clone() };
     let mut opened = backend::open(scene, &request)?;
@@ -81,23 +93,96 @@ fn trace(
     }
     let other_limit = options.time.is_some() || options.noise.is_some();
     let scene_spp = (!other_limit).then_some(scene.settings.spp);
-    let limits = Limits { spp: options.spp.or(scene_spp), seconds: options.time, noise: options.noise };
+    let spp = options.samples.as_ref().map(|samples| samples.end).or(options.spp).or(scene_spp);
+    let limits = Limits { spp, seconds: options.time, noise: options.noise };
+    let mut checkpoint = Checkpoint::of(options, scene);
     let mut reporter = Reporter::new(options.quiet);
     RENDERING.store(true, Ordering::SeqCst);
-    let size = (scene.film.width, scene.film.height);
-    let rendered = render(opened.tracer.as_mut(), size, limits, &mut |p| reporter.update(p), &STOP)?;
+    let mut watch = |rendered: &Rendered| {
+        reporter.update(&rendered.progress);
+        if let Some(checkpoint) = &mut checkpoint {
+            checkpoint.update(rendered);
+        }
+    };
+    let mut tracer = Losing::perhaps(opened.tracer.as_mut())?;
+    let mut rendered = resume(&mut tracer, begun, limits, &mut watch, &STOP);
     reporter.finish();
+    if let (Some(wanted), least) = (spp, rendered.film.first_sample + rendered.film.least_samples())
+        && least > wanted
+    {
+        say(&format!("the checkpoint already held more samples than were asked for: {least} a pixel"));
+    }
+    // A device that has failed would only fail again.
+    let mut layers = None;
+    if wants_aovs(options) && !matches!(rendered.end, End::Failed(_)) {
+        let size = (rendered.film.width, rendered.film.height);
+        match aovs(&mut tracer, size, rendered.film.most_samples()) {
+            Ok(found) => layers = Some(found),
+            Err(error) => rendered.end = End::Failed(error),
+        }
+    }
     seconds.render = rendered.progress.seconds;
     seconds.device = rendered.device_seconds;
-    finish(options, scene, &opened, rendered, seconds, outputs, say)
+    finish(options, scene, &opened, rendered, layers, checkpoint.as_ref(), seconds, outputs, say)
+}
+
+/// A tracer whose device is lost after some batches: with LUMINAIRE_LOSE_DEVICE_AFTER, so that scripts can try what happens then.
+struct Losing<'a> {
+    tracer: &'a mut dyn Tracer,
+    batches_left: Option<u64>,
+}
+
+impl<'a> Losing<'a> {
+    fn perhaps(tracer: &'a mut dyn Tracer) -> Result<Self> {
+        const NAME: &str = "LUMINAIRE_LOSE_DEVICE_AFTER";
+        let batches_left = match std::env::var(NAME) {
+            Ok(text) => {
+                Some(text.parse().map_err(|_| Error::Usage(format!("{NAME}={text}: expected a number of batches")))?)
+            }
+            Err(_) => None,
+        };
+        Ok(Losing { tracer, batches_left })
+    }
+}
+
+impl Tracer for Losing<'_> {
+    fn trace(&mut self, batch: &Batch) -> Result<Traced> {
+        match &mut self.batches_left {
+            Some(0) => Err(Error::Vulkan {
+                call: "vkQueueSubmit",
+                device: "the device".into(),
+                reason: "the device is lost (as LUMINAIRE_LOSE_DEVICE_AFTER asks)".into(),
+            }),
+            Some(left) => {
+                *left -= 1;
+                self.tracer.trace(batch)
+            }
+            None => self.tracer.trace(batch),
+        }
+    }
+
+    fn aovs(&mut self, tile: Tile, samples: Range<u32>) -> Result<Vec<AovSum>> {
+        self.tracer.aovs(tile, samples)
+    }
+
+    fn max_sums(&self) -> usize {
+        self.tracer.max_sums()
+    }
+
+    fn batch_seconds(&self) -> f64 {
+        self.tracer.batch_seconds()
+    }
 }
 
 /// Writes what there is, and tells how it ended.
+#[expect(clippy::too_many_arguments, reason = "each is one of the things that a render leaves")]
 fn finish(
     options: &RenderOptions,
     scene: &Scene,
     opened: &Opened,
     rendered: Rendered,
+    aovs: Option<Aovs>,
+    checkpoint: Option<&Checkpoint<'_>>,
     mut seconds: Seconds,
     outputs: &[PathBuf],
     say: &dyn Fn(&str),
@@ -112,35 +197,64 @@ fn finish(
         );
         say(&format!("warning: {} samples that were not finite, or lost, are left out{replay}", rendered.dropped));
     }
-    let written = if rendered.progress.samples > 0 { outputs } else { &[] };
+    WRITING.store(true, Ordering::SeqCst);
+    // First of all: whatever fails after it, nothing is lost.
+    let saved = checkpoint.filter(|_| rendered.progress.samples > 0).map(|checkpoint| checkpoint.save(&rendered));
+    let kept = matches!(saved, Some(Ok(())));
+    let unfinished_part = options.samples.is_some() && !matches!(rendered.end, End::Samples);
+    // Whoever finds a part may take it to be whole, so that one that is not stays in the checkpoint, if there is one.
+    let written = if rendered.progress.samples == 0 || unfinished_part && kept { &[] } else { outputs };
     let black = rendered.film.samples.iter().filter(|samples| **samples == 0).count();
     if black > 0 && !written.is_empty() {
         say(&format!("warning: {black} pixels have no sample and are black: the render ended during the first pass"));
     }
-    WRITING.store(true, Ordering::SeqCst);
-    let done = write(options, scene, opened, &rendered, &mut seconds, written);
+    let done = write(options, scene, opened, &rendered, aovs.as_ref(), &mut seconds, written);
     WRITING.store(false, Ordering::SeqCst);
+    if done.is_err() && kept {
+        say("the samples are in the checkpoint; the same command with --resume writes the pictures again");
+    }
     done?;
+    saved.transpose()?;
     if !options.quiet {
         print(&summary(options, &rendered, seconds, written))?;
     }
     match rendered.end {
         End::Samples | End::Time | End::Noise => Ok(ExitCode::SUCCESS),
         End::Stopped => {
-            say(if written.is_empty() {
+            say(if rendered.progress.samples == 0 {
                 "interrupted before the first sample; no picture is written"
+            } else if written.is_empty() {
+                "interrupted; the part is not finished and not written"
             } else {
                 "interrupted; the picture holds what was done until then"
             });
+            if kept {
+                say("the same command with --resume goes on from the checkpoint");
+            }
             Ok(ExitCode::from(INTERRUPTED))
         }
         End::Failed(error) => {
+            tell(&format!("error: {error}"));
             if !written.is_empty() {
                 say("the render failed; the picture holds what was done until then");
             }
-            Err(error)
+            if kept {
+                say(
+                    "the same command with --resume goes on from the checkpoint, also on another --device or --backend",
+                );
+            }
+            Ok(ExitCode::from(DEVICE_FAILED))
         }
     }
+}
+
+/// Whether somebody asks for what the camera sees first.
+fn wants_aovs(options: &RenderOptions) -> bool {
+    #[cfg(feature = "denoise")]
+    if options.denoised.is_some() {
+        return true;
+    }
+    options.aov
 }
 
 /// Writes the pictures and the figures.
@@ -149,18 +263,30 @@ fn write(
     scene: &Scene,
     opened: &Opened,
     rendered: &Rendered,
+    aovs: Option<&Aovs>,
     seconds: &mut Seconds,
     written: &[PathBuf],
 ) -> Result<()> {
     let start = Instant::now();
+    let provenance = options.samples.as_ref().map(|_| Provenance::of(scene));
+    let save = |path: &PathBuf| match (&provenance, aovs, image_io::Format::of(path)?) {
+        (Some(provenance), _, image_io::Format::Exr) => part::save(path, rendered, provenance),
+        (_, Some(aovs), image_io::Format::Exr) if options.aov => image_io::save_with_aovs(path, &rendered.film, aovs),
+        _ => image_io::save(path, &rendered.film, scene.settings.exposure),
+    };
     // Every file is tried: one that cannot be written must not cost the others.
-    let saved: Vec<_> =
-        written.iter().map(|path| image_io::save(path, &rendered.film, scene.settings.exposure)).collect();
+    let saved: Vec<_> = written.iter().map(save).collect();
     saved.into_iter().collect::<Result<()>>()?;
     if let (Some(path), Some(errors)) = (&options.error_map, rendered.film.error_map()) {
         let FilmSettings { width, height, .. } = scene.film;
         let [low, high] = heat_map::RELATIVE_ERRORS;
         image_io::save_png(path, &heat_map::heat_map(width, height, &errors.relative, low, high))?;
+    }
+    #[cfg(feature = "denoise")]
+    if let (Some(path), Some(aovs)) = (&options.denoised, aovs) {
+        let FilmSettings { width, height, .. } = scene.film;
+        let picture = luminaire::denoise::denoise(&rendered.film, aovs)?;
+        image_io::save_linear(path, width, height, &picture, scene.settings.exposure)?;
     }
     seconds.write = start.elapsed().as_secs_f64();
     if let Some(path) = &options.stats {
@@ -228,6 +354,7 @@ fn check_combinations(options: &RenderOptions) -> Result<()> {
             "--device chooses a Vulkan device, but --backend cpu uses none: leave one of them out".into(),
         ));
     }
+    checkpoint::check(options)?;
     options.estimator.check()
 }
 
@@ -243,6 +370,13 @@ fn outputs(options: &RenderOptions) -> Result<Vec<PathBuf>> {
     for (i, path) in outputs.iter().enumerate() {
         if outputs[..i].contains(path) {
             return Err(Error::Usage(format!("-o {} is given twice", path.display())));
+        }
+        image_io::check_output(path)?;
+    }
+    #[cfg(feature = "denoise")]
+    if let Some(path) = &options.denoised {
+        if outputs.contains(path) {
+            return Err(Error::Usage(format!("--denoised {}: the picture itself is written there", path.display())));
         }
         image_io::check_output(path)?;
     }
@@ -312,10 +446,18 @@ fn listen_for_interrupts(quiet: bool) -> Result<()> {
             });
         }
         if at_once {
-            std::process::exit(INTERRUPTED.into());
+            exit_now();
         }
     })
     .map_err(|e| Error::Usage(format!("cannot listen for Ctrl-C: {e}")))
+}
+
+/// Ends the process without the clean-up of libraries: a driver that is just being loaded does not survive that.
+fn exit_now() -> ! {
+    #[cfg(unix)]
+    signal_hook::low_level::exit(INTERRUPTED.into());
+    #[cfg(not(unix))]
+    std::process::exit(INTERRUPTED.into());
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! The structures that the host shares with the shaders (`shaders/scene.glsl`, `path_trace.comp`, `probe.comp`, `trace_rays.comp`).
+//! The structures that the host shares with the shaders (`shaders/scene.glsl`, `path_trace.comp`, `aov.comp`, `probe.comp`, `trace_rays.comp`).
 //!
 //! [`STRUCTS`] lists every member's offset; a test compares it with the offsets in the shipped SPIR-V.
 
@@ -13,6 +13,7 @@ pub const STRUCTS: &[(&str, usize, &[Member])] = &[
     ("Batch", size_of::<Batch>(), Batch::MEMBERS),
     ("PixelSum", size_of::<PixelSum>(), PixelSum::MEMBERS),
     ("Dropped", size_of::<Dropped>(), Dropped::MEMBERS),
+    ("AovSum", size_of::<AovSum>(), AovSum::MEMBERS),
     ("Call", size_of::<Call>(), Call::MEMBERS),
     ("Shots", size_of::<Shots>(), Shots::MEMBERS),
 ];
@@ -188,6 +189,20 @@ shared! {
         padding: u32,
         /// Index of the pixel and of the sample, of as many as there is room for.
         samples: [[u32; 2]; 15],
+    }
+}
+
+shared! {
+    /// What `aov.comp` writes for a pixel (binding 7).
+    AovSum {
+        /// Albedos, added up.
+        albedo: [f32; 3],
+        /// Depths.
+        depth: f32,
+        /// Normals.
+        normal: [f32; 3],
+        /// Rays that hit something.
+        hits: u32,
     }
 }
 

@@ -18,14 +18,17 @@ macro_rules! shader {
     };
 }
 
-/// The path tracer on the compute BVH and on ray queries, then the probe on both, then what only traces rays on both.
-pub const SHADERS: [Shader; 6] = [
+/// The path tracer on the compute BVH and on ray queries, then the probe on both, then what only traces rays on both, then
+/// the first hits.
+pub const SHADERS: [Shader; 8] = [
     shader!("path_trace_bvh"),
     shader!("path_trace_ray_query"),
     shader!("probe_bvh"),
     shader!("probe_ray_query"),
     shader!("trace_rays_bvh"),
     shader!("trace_rays_ray_query"),
+    shader!("aov_bvh"),
+    shader!("aov_ray_query"),
 ];
 
 impl Shader {
@@ -42,6 +45,11 @@ impl Shader {
     /// What only traces rays.
     pub(super) fn trace_rays(ray_query: bool) -> &'static Shader {
         &SHADERS[4 + usize::from(ray_query)]
+    }
+
+    /// The first hits of camera rays.
+    pub(super) fn aov(ray_query: bool) -> &'static Shader {
+        &SHADERS[6 + usize::from(ray_query)]
     }
 
     /// The shipped SPIR-V words.

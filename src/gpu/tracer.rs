@@ -7,12 +7,13 @@ use super::shader::Shader;
 use super::{Buffer, Device, Kernel, layout};
 use crate::Result;
 use crate::backend::{SceneTracer, check_ends};
-use crate::film::{Batch, PixelSum, Rays, SampleId};
+use crate::film::{AovSum, Batch, PixelSum, Rays, SampleId, Tile};
 use crate::render::{Traced, Tracer};
 use crate::sampling::PARTS;
 use crate::scene::{FilmSettings, Integrator, Scene, Sensor};
 use ash::vk;
 use gpu_allocator::MemoryLocation;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// The most sums of one batch: 24 MiB of results.
@@ -23,8 +24,10 @@ const DROPPED_SIZE: usize = size_of::<layout::Dropped>();
 
 /// Traces batches on a Vulkan device.
 pub struct GpuTracer {
-    // Dropped before what it is bound to.
+    // Dropped before what they are bound to.
     kernel: Kernel,
+    /// For the first hits; made when it is first wanted.
+    aov_kernel: Option<Kernel>,
     scene: GpuScene,
     ray_query: bool,
     sums: Buffer,
@@ -70,7 +73,16 @@ impl GpuTracer {
             MemoryLocation::GpuToCpu,
         )?;
         let kernel = kernel(device, &gpu_scene, ray_query, &sums, &dropped)?;
-        Ok(GpuTracer { kernel, scene: gpu_scene, ray_query, sums, dropped, readback, device: device.clone() })
+        Ok(GpuTracer {
+            kernel,
+            aov_kernel: None,
+            scene: gpu_scene,
+            ray_query,
+            sums,
+            dropped,
+            readback,
+            device: device.clone(),
+        })
     }
 }
 
@@ -135,6 +147,43 @@ impl Tracer for GpuTracer {
         let mut dropped: Vec<_> = named.map(|&[pixel, sample]| SampleId { pixel, sample }).collect();
         dropped.sort();
         Ok(Traced { sums, dropped, device_seconds })
+    }
+
+    fn aovs(&mut self, tile: Tile, samples: Range<u32>) -> Result<Vec<AovSum>> {
+        let size = (tile.pixels() * size_of::<layout::AovSum>()) as u64;
+        assert!(tile.pixels() <= MAX_SUMS / 2, "{} pixels are more than max_sums() / 2", tile.pixels());
+        if size == 0 {
+            return Ok(vec![]);
+        }
+        let kernel = match self.aov_kernel.take() {
+            Some(kernel) => kernel,
+            None => Kernel::new(
+                &self.device,
+                Shader::aov(self.ray_query),
+                &self.scene.model.constants(),
+                &self.scene.bindings(&self.sums, &self.dropped),
+                size_of::<layout::Batch>() as u32,
+            )?,
+        };
+        let kernel = self.aov_kernel.insert(kernel);
+        let push = layout::Batch {
+            tile_x: tile.x,
+            tile_y: tile.y,
+            tile_width: tile.width,
+            tile_height: tile.height,
+            first_sample: samples.start,
+            end_sample: samples.end,
+            group: 0,
+        };
+        let workgroups = [tile.width.div_ceil(WORKGROUP), tile.height.div_ceil(WORKGROUP), 1];
+        commands::submit(&self.device, "first hits", |cmd| {
+            let recorder = Recorder { device: &self.device, cmd };
+            recorder.dispatch(kernel, bytemuck::bytes_of(&push), workgroups);
+            recorder.read_back(&self.sums, size, &self.readback, 0);
+        })?;
+        let sums = bytemuck::cast_slice::<u8, layout::AovSum>(&self.readback.mapped()?[..size as usize]);
+        let sum = |s: &layout::AovSum| AovSum { albedo: s.albedo, depth: s.depth, normal: s.normal, hits: s.hits };
+        Ok(sums.iter().map(sum).collect())
     }
 
     fn max_sums(&self) -> usize {

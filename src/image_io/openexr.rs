@@ -8,6 +8,7 @@ use ::exr::prelude::{
     AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, Layer, LayerAttributes, ReadChannels,
     ReadLayers, Text, read,
 };
+use std::collections::BTreeMap;
 use std::io::Cursor;
 use std::path::Path;
 
@@ -25,8 +26,19 @@ pub struct Exr<'a> {
     pub rgb: &'a [[f32; 3]],
     /// Standard error of every number of `rgb`, if it is known; written as the channels `error.R`, `error.G` and `error.B`.
     pub error: Option<&'a [[f32; 3]]>,
+    /// Further channels, by name.
+    pub more: &'a [(String, Values)],
     /// What else is known about the picture, by name.
     pub attributes: &'a [(&'a str, Attribute<'a>)],
+}
+
+/// A number for every pixel, rows from the top.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Values {
+    /// 32-bit floats.
+    Float(Vec<f32>),
+    /// 32-bit whole numbers.
+    Integer(Vec<u32>),
 }
 
 /// A value in the head of a file.
@@ -56,6 +68,16 @@ impl Exr<'_> {
         };
         let mut channels = Vec::from(planes("", self.rgb));
         channels.extend(self.error.into_iter().flat_map(|error| planes(ERROR, error)));
+        for (name, values) in self.more {
+            let samples = match values {
+                Values::Float(values) => FlatSamples::F32(values.clone()),
+                Values::Integer(values) => FlatSamples::U32(values.clone()),
+            };
+            if samples.len() != pixels {
+                return Err(format!("there are not {} x {} numbers in the channel {name}", self.width, self.height));
+            }
+            channels.push(AnyChannel::new(text(name), samples));
+        }
         let mut about = LayerAttributes { software_name: Some(text("luminaire")), ..LayerAttributes::default() };
         about.other = self.attributes.iter().map(|(name, value)| (text(name), value.stored())).collect();
         let size = (self.width as usize, self.height as usize);
@@ -164,6 +186,82 @@ pub(super) fn open(path: &Path) -> Result<Picture, String> {
         error: choice.error.as_ref().map(planes).transpose()?,
         clamped: false,
     })
+}
+
+/// The numbers of a file with one part, by channel.
+#[derive(Debug)]
+pub(crate) struct Channels {
+    pub(crate) width: u32,
+    pub(crate) height: u32,
+    values: BTreeMap<String, Values>,
+}
+
+impl Channels {
+    /// Takes out a channel of whole numbers, one a pixel.
+    pub(crate) fn take_integers(&mut self, name: &str) -> Option<Vec<u32>> {
+        match self.values.remove(name)? {
+            Values::Integer(values) => Some(values),
+            Values::Float(_) => None,
+        }
+    }
+}
+
+/// The texts in the head of a file with one part, by name.
+///
+/// # Errors
+/// In words that can follow the file's name.
+pub(crate) fn read_texts(path: &Path) -> Result<BTreeMap<String, String>, String> {
+    let meta = MetaData::read_from_file(path, false).map_err(in_words)?;
+    let [header] = &meta.headers[..] else { return Ok(BTreeMap::new()) };
+    let texts = header.own_attributes.other.iter().filter_map(|(name, value)| match value {
+        AttributeValue::Text(value) => Some((name.to_string(), value.to_string())),
+        _ => None,
+    });
+    Ok(texts.collect())
+}
+
+/// Reads every channel of a file with one part that this program has written.
+///
+/// # Errors
+/// In words that can follow the file's name.
+pub(crate) fn read_channels(path: &Path) -> Result<Channels, String> {
+    let meta = MetaData::read_from_file(path, false).map_err(in_words)?;
+    let [header] = &meta.headers[..] else { return Err("it has several parts".into()) };
+    let (width, height) = (header.layer_size.width() as u64, header.layer_size.height() as u64);
+    let bytes = width * height * header.channels.list.len() as u64 * 4;
+    // Nothing deflates better than 1 : 1032, so that a small file never asks for much memory.
+    if std::fs::metadata(path).map_err(|e| e.to_string())?.len() < bytes / 1032 {
+        return Err("it is truncated: so few bytes cannot hold so many pixels".into());
+    }
+    if width * height > MOST_PIXELS {
+        return Err(too_large(width, height));
+    }
+    let image = read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .all_channels()
+        .first_valid_layer()
+        .all_attributes()
+        .from_file(path)
+        .map_err(in_words)?;
+    let values = image.layer_data.channel_data.list.into_iter().filter_map(|channel| {
+        let values = match channel.sample_data {
+            FlatSamples::F32(values) => Values::Float(values),
+            FlatSamples::U32(values) => Values::Integer(values),
+            FlatSamples::F16(_) => return None,
+        };
+        Some((channel.name.to_string(), values))
+    });
+    let values: BTreeMap<_, _> = values.collect();
+    let pixels = (width * height) as usize;
+    let whole = |values: &Values| match values {
+        Values::Float(values) => values.len() == pixels,
+        Values::Integer(values) => values.len() == pixels,
+    };
+    if !values.values().all(whole) {
+        return Err("a channel does not have a number for every pixel".into());
+    }
+    Ok(Channels { width: width as u32, height: height as u32, values })
 }
 
 /// Finds the picture: R, G and B, else Y, without a prefix; else the only ones with a prefix.
@@ -304,7 +402,7 @@ mod tests {
     fn what_is_written_is_read() {
         let error: Vec<_> = (0..6).map(|i| [0.5, i as f32, f32::MIN_POSITIVE]).collect();
         let attributes = [("samples", Attribute::Number(64.0)), ("scene", Attribute::Text("b\u{e9} \u{4e16}"))];
-        let exr = Exr { width: 3, height: 2, rgb: &rgb(), error: Some(&error), attributes: &attributes };
+        let exr = Exr { width: 3, height: 2, rgb: &rgb(), error: Some(&error), more: &[], attributes: &attributes };
         let bytes = exr.encode().unwrap();
         let picture = opened(&bytes).unwrap();
         assert_eq!((picture.width, picture.height, picture.clamped), (3, 2, false));
@@ -321,14 +419,14 @@ mod tests {
         let plain = Exr { error: None, attributes: &[], ..exr };
         assert_eq!(opened(&plain.encode().unwrap()).unwrap().error, None);
         assert!(Exr { width: 2, ..exr }.encode().is_err());
-        assert!(Exr { width: 0, height: 0, rgb: &[], error: None, attributes: &[] }.encode().is_err());
+        assert!(Exr { width: 0, height: 0, rgb: &[], error: None, more: &[], attributes: &[] }.encode().is_err());
     }
 
     #[test]
     fn one_picture_has_one_file() {
         let names: Vec<String> = (0..20).map(|i| format!("number {i}")).collect();
         let attributes: Vec<_> = names.iter().map(|name| (&**name, Attribute::Number(1.0))).collect();
-        let exr = Exr { width: 3, height: 2, rgb: &rgb(), error: None, attributes: &attributes };
+        let exr = Exr { width: 3, height: 2, rgb: &rgb(), error: None, more: &[], attributes: &attributes };
         let bytes = exr.encode().unwrap();
         assert!((0..10).all(|_| exr.encode().unwrap() == bytes));
     }
@@ -388,7 +486,7 @@ mod tests {
     /// Whatever is cut off or changed, there is an answer, soon, and no panic.
     #[test]
     fn damaged_files() {
-        let exr = Exr { width: 3, height: 2, rgb: &rgb(), error: Some(&rgb()), attributes: &[] };
+        let exr = Exr { width: 3, height: 2, rgb: &rgb(), error: Some(&rgb()), more: &[], attributes: &[] };
         let bytes = exr.encode().unwrap();
         for length in 0..bytes.len() {
             assert!(opened(&bytes[..length]).is_err(), "{length} of {} bytes", bytes.len());

@@ -27,11 +27,12 @@ pub mod warp;
 
 use crate::Result;
 use crate::backend::{SceneTracer, check_ends};
-use crate::film::{Batch, MOST_RADIANCE, PixelSum, Rays, SampleId};
+use crate::film::{AovSum, Batch, MOST_RADIANCE, PixelSum, Rays, SampleId, Tile};
 use crate::render::{Traced, Tracer};
 use crate::scene::{FilmSettings, Integrator, LuminaireTable, Scene, Sensor, widen};
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
+use std::ops::Range;
 use tree::Trees;
 
 /// The reference tracer with its scene; seed, film size and integrator are the scene's own.
@@ -136,6 +137,15 @@ impl Tracer for Reference {
             })
             .unzip();
         Ok(Traced { sums, dropped: dropped.concat(), device_seconds: None })
+    }
+
+    fn aovs(&mut self, tile: Tile, samples: Range<u32>) -> Result<Vec<AovSum>> {
+        let this = &*self;
+        let sums = (0..tile.pixels() as u32).into_par_iter().map(|in_tile| {
+            let pixel = (tile.y + in_tile / tile.width) * this.scene.film.width + tile.x + in_tile % tile.width;
+            this.first_hits(pixel, samples.clone())
+        });
+        Ok(sums.collect())
     }
 
     fn max_sums(&self) -> usize {

@@ -1,6 +1,6 @@
 //! How a render is cut into batches.
 
-use crate::film::{Batch, Tile};
+use crate::film::{Batch, Film, Tile};
 use crate::sampling::PARTS;
 
 /// Samples (over all pixels) of the first batch: few, because each may be a path of ten thousand bounces.
@@ -53,8 +53,19 @@ pub(crate) struct Schedule {
 }
 
 impl Schedule {
-    pub(crate) fn new((width, height): (u32, u32), spp: u32) -> Self {
-        Schedule { width, height, spp, aim: u32::MAX, pass: 0..0, x: 0, y: height }
+    /// What is left to do of a film until every pixel has all samples before number `end`. In an unfinished pass, which is told by
+    /// some pixels having fewer samples than others, the first of these is next.
+    pub(crate) fn of(film: &Film, end: u32) -> Self {
+        let (width, height) = (film.width, film.height);
+        let [start, pass_end] = [film.least_samples(), film.most_samples()].map(|n| film.first_sample + n);
+        let most = film.most_samples();
+        match film.samples.iter().position(|n| *n < most) {
+            Some(pixel) if start < end => {
+                let (x, y) = (pixel as u32 % width, pixel as u32 / width);
+                Schedule { width, height, spp: end, aim: u32::MAX, pass: start..pass_end, x, y }
+            }
+            _ => Schedule { width, height, spp: end, aim: u32::MAX, pass: start..start, x: 0, y: height },
+        }
     }
 
     /// Samples that all pixels have if the last batch ended a pass.
@@ -126,6 +137,10 @@ impl Schedule {
 mod tests {
     use super::*;
 
+    fn fresh((width, height): (u32, u32), end: u32) -> Schedule {
+        Schedule::of(&Film::new(width, height).unwrap(), end)
+    }
+
     #[test]
     fn group_bounds() {
         let bounds: Vec<u32> = std::iter::successors(Some(0), |b| Some(groups_end(*b)))
@@ -141,7 +156,7 @@ mod tests {
 
     #[test]
     fn a_fast_device_gets_many_groups_at_once() {
-        let mut schedule = Schedule::new((64, 64), 1000);
+        let mut schedule = fresh((64, 64), 1000);
         let passes: Vec<_> = std::iter::from_fn(|| schedule.next(4096 * 480, 1 << 30)).collect();
         assert!(passes.iter().all(|b| b.tile.pixels() == 4096));
         let ranges: Vec<_> = passes.iter().map(|b| b.samples.clone()).collect();
@@ -150,7 +165,7 @@ mod tests {
 
     #[test]
     fn a_pass_ends_at_the_aim() {
-        let mut schedule = Schedule::new((64, 64), 1000);
+        let mut schedule = fresh((64, 64), 1000);
         schedule.aim(77);
         let passes: Vec<_> = std::iter::from_fn(|| schedule.next(1 << 40, 1 << 30)).map(|b| b.samples).collect();
         assert_eq!(passes, [0..8, 8..16, 16..77, 77..80, 80..1000]);
@@ -158,16 +173,45 @@ mod tests {
 
     #[test]
     fn a_single_pixel_stays_within_the_dispatch_limit() {
-        let mut schedule = Schedule::new((1, 1), u32::MAX);
+        let mut schedule = fresh((1, 1), u32::MAX);
         schedule.pass.end = 16 * PARTS;
         assert_eq!(schedule.next(1 << 40, 1 << 30).map(|b| b.groups()), Some(65_535 * PARTS));
     }
 
     #[test]
     fn the_last_sample_number_is_an_end() {
-        let mut schedule = Schedule::new((1, 1), u32::MAX);
+        let mut schedule = fresh((1, 1), u32::MAX);
         schedule.pass.end = u32::MAX - 7;
         assert_eq!(schedule.next(1 << 40, 1 << 30).map(|b| b.samples), Some(u32::MAX - 7..u32::MAX));
         assert_eq!(schedule.next(1 << 40, 1 << 30), None);
+    }
+
+    #[test]
+    fn a_film_tells_where_its_render_was() {
+        for (batches_before, end) in [(0, 40), (1, 40), (5, 40), (23, 77), (60, 77)] {
+            let mut film = Film::new(37, 23).unwrap();
+            let mut schedule = Schedule::of(&film, end);
+            schedule.aim(50);
+            let work: Vec<_> = std::iter::from_fn(|| schedule.next(700, 1 << 30)).collect();
+            for batch in &work[..batches_before.min(work.len())] {
+                film.add(batch, &vec![Default::default(); batch.tile.pixels() * batch.groups() as usize]);
+            }
+            let mut again = Schedule::of(&film, end);
+            again.aim(50);
+            let rest: Vec<_> = std::iter::from_fn(|| again.next(700, 1 << 30)).collect();
+            assert_eq!(rest, work[batches_before.min(work.len())..]);
+        }
+    }
+
+    #[test]
+    fn a_later_part_has_the_groups_of_the_whole() {
+        let mut film = Film::new(1, 1).unwrap();
+        film.first_sample = 64;
+        let mut schedule = Schedule::of(&film, 128);
+        assert_eq!(schedule.next(16, 1 << 30).map(|b| (b.samples, b.group)), Some((64..80, 4)));
+        film.first_sample = 70;
+        let mut schedule = Schedule::of(&film, 128);
+        let passes: Vec<_> = std::iter::from_fn(|| schedule.next(1 << 40, 1 << 30)).map(|b| b.samples).collect();
+        assert_eq!(passes, [70..80, 80..128]);
     }
 }

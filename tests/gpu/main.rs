@@ -6,6 +6,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod aovs;
 mod densities;
 mod error_bar;
 mod estimators;

@@ -2,7 +2,7 @@
 
 use super::words::{above_from, count, largest, share};
 use super::{Definition, Findings, Sweep};
-use crate::film::{Batch, PixelSum};
+use crate::film::{AovSum, Batch, PixelSum, Tile};
 use crate::measure::Workbench;
 use crate::measure::chart::{Axis, Chart, Point, Series};
 use crate::render::{Limits, Traced, Tracer, render};
@@ -11,6 +11,7 @@ use crate::scene::build::{add, empty, lamp, quad};
 use crate::scene::{Environment, Estimator, Integrator, LightSampling};
 use crate::{Result, render};
 use glam::{Affine3A, Vec3};
+use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 
 /// The sweep over the number of samples.
@@ -155,6 +156,10 @@ impl Tracer for Given<'_> {
             PixelSum { radiance: [f64::from(sum); 3], ..PixelSum::default() }
         };
         Ok(Traced { sums: (0..batch.groups()).map(group).collect(), ..Traced::default() })
+    }
+
+    fn aovs(&mut self, tile: Tile, _: Range<u32>) -> Result<Vec<AovSum>> {
+        Ok(vec![AovSum::default(); tile.pixels()])
     }
 
     fn max_sums(&self) -> usize {

@@ -1,0 +1,64 @@
+// What the camera sees first, added up over samples of every pixel: albedo, normal, depth. For denoisers and compositing.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#ifdef RAY_QUERY
+#extension GL_EXT_ray_query : require
+#endif
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+#include "scene.glsl"
+#include "rng.glsl"
+#include "warp.glsl"
+#include "texture.glsl"
+#include "intersect.glsl"
+#include "surfel.glsl"
+#include "sensor.glsl"
+
+// The same as the path tracer's; there are no groups.
+layout(push_constant, std430) uniform Batch {
+    uint tile_x;
+    uint tile_y;
+    uint tile_width;
+    uint tile_height;
+    uint first_sample;
+    uint end_sample;
+    uint group;
+} batch;
+
+struct AovSum {
+    float albedo[3];
+    float depth;
+    float normal[3];
+    uint hits;
+};
+layout(set = 0, binding = 7, std430) writeonly buffer Aovs { AovSum aovs[]; };
+
+void main() {
+    uvec3 id = gl_GlobalInvocationID;
+    if (id.x >= batch.tile_width || id.y >= batch.tile_height) return;
+    uvec2 pixel = uvec2(batch.tile_x, batch.tile_y) + id.xy;
+    uint pixel_index = pixel.y * frame.width + pixel.x;
+    vec3 albedo = vec3(0.0);
+    vec3 normal = vec3(0.0);
+    float depth = 0.0;
+    uint hits = 0u;
+    for (uint sample_index = batch.first_sample; sample_index < batch.end_sample; sample_index++) {
+        vec3 origin, direction;
+        sensor_ray(pixel, pixel_index, sample_index, origin, direction);
+        Hit hit;
+        uint salt = HOLES ? ray_salt(pixel_index, sample_index, 0u, frame.seed) : 0u;
+        if (!closest_hit(origin, direction, INFINITY, salt, hit)) continue;
+        Surfel s = surfel(hit, -direction);
+        Material material = material_at(s);
+        albedo += material.lambert.rgb;
+        if (GLOSSY) albedo += material.glossy.rgb;
+        // Of a dielectric either the one or the other.
+        if (IMPULSES) albedo += max(material.reflection.rgb, DIELECTRICS ? material.transmission.rgb : vec3(0.0));
+        normal += s.shading_normal;
+        depth += dot(s.position - frame.position.xyz, frame.forward.xyz);
+        hits++;
+    }
+    aovs[id.y * batch.tile_width + id.x] =
+        AovSum(float[3](albedo.x, albedo.y, albedo.z), depth, float[3](normal.x, normal.y, normal.z), hits);
+}
