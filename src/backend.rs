@@ -1,10 +1,12 @@
 //! Which tracer runs, on which device, and why.
 
+use crate::film::Film;
 use crate::gpu::{Device, GpuTracer, Instance, PhysicalDevice};
 use crate::reference::Reference;
-use crate::render::Tracer;
+use crate::render::{self, End, Limits, Rendered, Tracer};
 use crate::scene::{FilmSettings, Integrator, Scene, Sensor};
 use crate::{Error, Result};
+use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 /// The three ways to trace rays.
@@ -64,10 +66,12 @@ pub(crate) fn check_ends(integrator: &Integrator) -> Result<()> {
     }
 }
 
-/// A tracer, ready to run.
-pub struct Opened {
+/// A tracer with a scene, ready to run; [`open`] makes it.
+pub struct Renderer {
     /// The tracer with the scene loaded.
     pub tracer: Box<dyn SceneTracer>,
+    /// Width and height in pixels of the film of the scene that was opened.
+    pub size: (u32, u32),
     /// What was chosen.
     pub backend: Backend,
     /// Name of the device.
@@ -80,6 +84,45 @@ pub struct Opened {
     pub notice: bool,
     /// Seconds spent on building the acceleration structures and uploading.
     pub build_seconds: f64,
+}
+
+impl Renderer {
+    /// Renders the scene until a limit is met: the whole way from a scene to a picture, where nobody watches. Without any limit it never
+    /// ends.
+    ///
+    /// # Errors
+    /// If the film does not fit into memory, or the device fails; what was done is lost then. [`Renderer::resume`] keeps it.
+    pub fn render(&mut self, limits: Limits) -> Result<Film> {
+        let nothing = Rendered::nothing(self.size, 0)?;
+        let rendered = self.resume(nothing, limits, &mut |_| {}, &AtomicBool::new(false))?;
+        match rendered.end {
+            End::Failed(error) => Err(error),
+            _ => Ok(rendered.film),
+        }
+    }
+
+    /// Goes on with a render ([`Rendered::nothing`] of this [`size`](Renderer::size) begins one) until a limit is met or `stop` is set,
+    /// calling `watch` after each batch. See [`render::resume`]. A failure of the device is an [`End`].
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if the film is not of this size.
+    pub fn resume(
+        &mut self,
+        rendered: Rendered,
+        limits: Limits,
+        watch: &mut dyn FnMut(&Rendered),
+        stop: &AtomicBool,
+    ) -> Result<Rendered> {
+        let (width, height) = self.size;
+        let film = (rendered.film.width, rendered.film.height);
+        if film != self.size {
+            return Err(Error::Usage(format!(
+                "the scene was opened with a film of {width} x {height} pixels, but the render to go on with has {} x {}",
+                film.0, film.1
+            )));
+        }
+        Ok(render::resume(self.tracer.as_mut(), rendered, limits, watch, stop))
+    }
 }
 
 /// What one Vulkan device offers.
@@ -110,7 +153,7 @@ pub struct DeviceReport {
 /// # Errors
 /// If the request names a device or backend that is not there, the scene does not fit it, or its estimator has paths that
 /// never end ([`Estimator::ends`](crate::scene::Estimator::ends)).
-pub fn open(scene: &Scene, request: &Request) -> Result<Opened> {
+pub fn open(scene: &Scene, request: &Request) -> Result<Renderer> {
     check_ends(&scene.integrator)?;
     if request.backend == Some(Backend::Cpu) {
         if let Some(device) = &request.device {
@@ -136,8 +179,9 @@ pub fn open(scene: &Scene, request: &Request) -> Result<Opened> {
     let (name, driver) = (device.name.clone(), device.driver.clone());
     let device = Device::open(device, ray_query)?;
     let tracer = Box::new(GpuTracer::new(&device, scene, ray_query)?);
-    Ok(Opened {
+    Ok(Renderer {
         tracer,
+        size: (scene.film.width, scene.film.height),
         backend,
         device: name,
         driver,
@@ -147,13 +191,14 @@ pub fn open(scene: &Scene, request: &Request) -> Result<Opened> {
     })
 }
 
-fn open_reference(scene: &Scene, why: String, notice: bool) -> Opened {
+fn open_reference(scene: &Scene, why: String, notice: bool) -> Renderer {
     let start = Instant::now();
     let tracer = Box::new(Reference::new(scene));
     let threads = rayon::current_num_threads();
     let device = format!("{threads} CPU thread{}", if threads == 1 { "" } else { "s" });
-    Opened {
+    Renderer {
         tracer,
+        size: (scene.film.width, scene.film.height),
         backend: Backend::Cpu,
         device,
         driver: String::new(),
@@ -306,6 +351,24 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn a_renderer_renders_its_scene_and_no_film_of_another_size() {
+        use crate::scene::build::{add, empty, lamp, quad};
+        use glam::{Affine3A, Vec3};
+        let mut scene = empty(3, 2);
+        let wall = quad(Vec3::new(-9.0, -9.0, -1.0), Vec3::X * 18.0, Vec3::Y * 18.0);
+        add(&mut scene, wall, lamp(Vec3::new(1.0, 2.0, 3.0)), Affine3A::IDENTITY);
+        let mut renderer = open(&scene, &Request { backend: Some(Backend::Cpu), device: None }).unwrap();
+        let limits = Limits { spp: Some(4), ..Limits::default() };
+        let film = renderer.render(limits).unwrap();
+        assert_eq!((film.width, film.height, film.least_samples()), (3, 2, 4));
+        assert!((0..6).all(|pixel| film.mean(pixel) == [1.0, 2.0, 3.0]), "{:?}", film.to_linear());
+
+        let turned = Rendered::nothing((2, 3), 0).unwrap();
+        let error = renderer.resume(turned, limits, &mut |_| {}, &AtomicBool::new(false)).unwrap_err();
+        assert!(error.exit_code() == 2 && error.to_string().contains("3 x 2"), "{error}");
     }
 
     #[test]

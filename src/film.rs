@@ -150,7 +150,7 @@ impl Film {
                 "{width} x {height} pixels are more than the 2^32 - 1 that have a number"
             )));
         }
-        check_memory(width, height, available_memory())
+        check_memory(width, height, crate::memory::available())
     }
 
     /// Number of pixels.
@@ -262,13 +262,6 @@ fn too_large(width: u32, height: u32, limit: String) -> Error {
         limit,
         advice: "choose a smaller --width and --height".into(),
     }
-}
-
-/// Bytes that a process may still take without swapping; known on Linux only.
-fn available_memory() -> Option<u64> {
-    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
-    let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
-    line.split_whitespace().next()?.parse::<u64>().ok().map(|kib| kib * 1024)
 }
 
 #[cfg(test)]

@@ -11,20 +11,34 @@
 //!                                                  + buffers ─► path_trace kernel ┘
 //! ```
 //!
-//! ```no_run
-//! use luminaire::{backend, image_io, render, scene};
-//! use std::{path::Path, sync::atomic::AtomicBool};
+//! # Rendering from a program
+//!
+//! ```
+//! use luminaire::backend::{self, Backend, Request};
+//! use luminaire::{image_io, render::Limits, scene};
 //!
 //! # fn main() -> luminaire::Result<()> {
-//! let scene = scene::load(Path::new("scenes/cornell/cornell.toml"))?;
-//! let mut opened = backend::open(&scene, &backend::Request::default())?;
-//! let limits = render::Limits { spp: Some(16), seconds: None, noise: None };
-//! let size = (scene.film.width, scene.film.height);
-//! let rendered = render::render(opened.tracer.as_mut(), size, limits, &mut |_| {}, &AtomicBool::new(false))?;
-//! image_io::save(Path::new("cornell.png"), &rendered.film, scene.settings.exposure)?;
+//! # let temporary = tempfile::tempdir().unwrap();
+//! # let folder = temporary.path();
+//! let mut scene = scene::load("scenes/cornell/cornell.toml".as_ref())?;
+//! (scene.film.width, scene.film.height) = (32, 32);
+//! // `Request::default()` takes the fastest backend of the best device.
+//! let request = Request { backend: Some(Backend::Cpu), device: None };
+//! let mut renderer = backend::open(&scene, &request)?;
+//! let film = renderer.render(Limits { spp: Some(4), ..Limits::default() })?;
+//! image_io::save(&folder.join("cornell.png"), &film, scene.settings.exposure)?;
+//! # assert_eq!((film.width, film.least_samples()), (32, 4));
+//! # assert!(folder.join("cornell.png").is_file());
 //! # Ok(())
 //! # }
 //! ```
+//!
+//! The parts: a [`Scene`] is loaded ([`scene::load`]) or built in code ([`scene::build`]) and may be changed until it is opened; a [`Renderer`] is that scene on a
+//! device ([`backend::open`]); a [`Film`] holds the samples, and what follows from them: [`Film::mean`], [`Film::error`],
+//! [`Film::to_linear`]. To watch a render, end it, or go on with it, there is [`Renderer::resume`]; [`part`] keeps one in a file.
+//!
+//! `examples/` has programs: `render_file` (a file to a picture, with progress), `scene_in_code` (no file; all backends compared), `progressive` (one
+//! thread renders, another one looks).
 //!
 //! # From the lecture to the code
 //!
@@ -66,6 +80,7 @@ pub mod film;
 pub mod gpu;
 pub mod image_io;
 pub mod measure;
+mod memory;
 pub mod part;
 pub mod reference;
 pub mod render;
@@ -73,4 +88,9 @@ pub mod sampling;
 pub mod scene;
 pub mod view;
 
+pub use backend::Renderer;
 pub use error::{Error, Result};
+pub use film::Film;
+/// The vectors and maps that scenes are made of, in the version that this library wants.
+pub use glam;
+pub use scene::Scene;

@@ -16,6 +16,8 @@ fn main() -> ExitCode {
         cli::Command::Inspect(options) => cli::inspect::run(&options.scene),
         cli::Command::Stability(options) => cli::stability::run(options),
         cli::Command::Bench(options) => cli::bench::run(options),
+        cli::Command::Completions(options) => cli::completions::run(options.shell),
+        cli::Command::Man(options) => cli::man::run(options.folder.as_deref()),
     };
     let code = done.unwrap_or_else(|error| {
         cli::tell(&format!("error: {error}"));

@@ -317,7 +317,7 @@ pub fn aovs(tracer: &mut dyn Tracer, (width, height): (u32, u32), samples: u32) 
     let samples = samples.min(AOV_SAMPLES);
     let mut sums = Vec::with_capacity(width as usize * height as usize);
     // Pieces as short as a batch of a path tracer, by rule of thumb.
-    let pixels = (tracer.max_sums() / 2).min(1 << 16).max(1);
+    let pixels = (tracer.max_sums() / 2).clamp(1, 1 << 16);
     let rows = (pixels / width.max(1) as usize).max(1) as u32;
     for y in (0..height).step_by(rows as usize) {
         // A row may be longer than a piece; then its pieces follow each other.

@@ -3,10 +3,12 @@
 pub mod bench;
 mod checkpoint;
 pub mod compare;
+pub mod completions;
 pub mod devices;
 mod estimator;
 pub mod inspect;
 mod inspect_tables;
+pub mod man;
 pub mod merge;
 mod progress;
 pub mod render;
@@ -20,6 +22,7 @@ mod watch;
 use luminaire::Error;
 use luminaire::backend::Backend;
 use luminaire::measure::bench::{SECTIONS, check_estimator};
+use std::borrow::Cow;
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -36,8 +39,8 @@ const EXAMPLES: &str = "\
 Examples:
   luminaire render scenes/cornell/cornell.toml
   luminaire render model.obj -o model.png -o model.exr --spp 256
-  luminaire view model.obj
   luminaire render model.obj -o model.png --checkpoint model.part.exr --resume
+  luminaire view model.obj
   luminaire compare model.exr reference.exr
   luminaire inspect model.obj
   luminaire devices
@@ -63,6 +66,19 @@ Examples:
 
 ";
 
+const MERGE_HELP: &str = "\
+Examples:
+  luminaire merge part-*.exr -o picture.png -o picture.exr
+      the picture of a render that was divided by --samples 0..64, 64..128, ...
+
+The parts must be of the same scene, size, seed, estimator and version, and hold every sample from number 0 on once. The picture is the one of a single
+render, but for rounding (1e-6 of each number at most).
+
+Exit codes:
+  0  merged
+  1  a file cannot be read or written
+  2  wrong usage: samples are missing or doubled, a part is not finished, or of another render";
+
 const VIEW_EXAMPLES: &str = "\
 Examples:
   luminaire view scenes/cornell/cornell.toml
@@ -80,19 +96,6 @@ Exit codes:
   0    the window was closed
   1    failure: a file, a scene, a device, no display; `error:` on stderr says what and what to do
   2    wrong usage: an option, or options that do not go together";
-
-const MERGE_HELP: &str = "\
-Examples:
-  luminaire merge part-*.exr -o picture.png -o picture.exr
-      the picture of a render that was divided by --samples 0..64, 64..128, ...
-
-The parts must be of the same scene, size, seed, estimator and version, and hold every sample from number 0 on once. The picture is the one of a single
-render, but for rounding (1e-6 of each number at most).
-
-Exit codes:
-  0  merged
-  1  a file cannot be read or written
-  2  wrong usage: samples are missing or doubled, a part is not finished, or of another render";
 
 const COMPARE_EXAMPLES: &str = "\
 Examples:
@@ -143,6 +146,55 @@ Exit codes:
   2    wrong usage
   130  interrupted; nothing is written";
 
+const DEVICES_HELP: &str = "\
+Examples:
+  luminaire devices
+      every device, what it offers, and the backend that `luminaire render` would take there
+  luminaire render model.obj --device llvmpipe
+      renders on the one whose name contains this
+
+Exit codes:
+  0  at least one device is usable
+  1  none is; what to install is told
+  2  wrong usage";
+
+const INSPECT_HELP: &str = "\
+Examples:
+  luminaire inspect scenes/textures/textures.toml
+      objects, materials, textures and luminaires, what the kernel will model, the memory that this takes, and every warning
+  luminaire inspect model.obj
+      the camera and the light that were found for it, too
+
+Exit codes:
+  0  the scene can be loaded, with or without warnings
+  1  it cannot: a file is missing or wrong; `error:` on stderr says where and what to do
+  2  wrong usage";
+
+const COMPLETIONS_HELP: &str = "\
+Examples:
+  luminaire completions bash > ~/.local/share/bash-completion/completions/luminaire
+      for yourself; for everyone: /usr/share/bash-completion/completions/luminaire
+  luminaire completions zsh > ~/.zfunc/_luminaire
+      with `fpath=(~/.zfunc $fpath)` before `compinit` in ~/.zshrc
+  luminaire completions fish > ~/.config/fish/completions/luminaire.fish
+
+Exit codes:
+  0  printed
+  1  standard output cannot be written
+  2  wrong usage: there is no script for this shell";
+
+const MAN_HELP: &str = "\
+Examples:
+  luminaire man | man -l -
+      reads the manual page
+  luminaire man ~/.local/share/man/man1
+      installs all of them for yourself: then `man luminaire-render`
+
+Exit codes:
+  0  printed or written
+  1  a page cannot be written
+  2  wrong usage";
+
 /// A path tracer on Vulkan: ray queries or a compute-shader BVH, with a double-precision reference.
 #[derive(Debug, clap::Parser)]
 #[command(version, about, after_help = format!("{EXAMPLES}{EXIT_CODES}"), subcommand_required = true)]
@@ -155,14 +207,14 @@ pub struct Args {
 pub enum Command {
     /// Render a scene to PNG, EXR or HDR files.
     Render(RenderOptions),
-    /// Show a scene in a window: the camera moves, and the picture gets better while it rests.
-    View(ViewOptions),
     /// Join the parts of a render that --samples wrote.
     Merge(MergeOptions),
+    /// Show a scene in a window: the camera moves, and the picture gets better while it rests.
+    View(ViewOptions),
     /// Tell how far a picture is from a reference, and whether that is within limits.
     Compare(CompareOptions),
     /// List every Vulkan device, what it offers, and which backend it would run and why.
-    #[command(after_help = "Exit code 0 if at least one device is usable, 1 if none is.")]
+    #[command(after_help = DEVICES_HELP)]
     Devices,
     /// Show what was loaded from a scene, and every warning.
     Inspect(InspectOptions),
@@ -170,6 +222,27 @@ pub enum Command {
     Stability(StabilityOptions),
     /// Measure speed against accuracy: scenes, backends and estimators side by side, as a page, charts and numbers.
     Bench(BenchOptions),
+    /// Print a script with which a shell completes subcommands, options and their values.
+    Completions(CompletionsOptions),
+    /// Print the manual page, or write one page for each subcommand to a folder.
+    Man(ManOptions),
+}
+
+/// For which shell.
+#[derive(Debug, clap::Args)]
+#[command(after_help = COMPLETIONS_HELP)]
+pub struct CompletionsOptions {
+    /// The shell that will read the script.
+    pub shell: clap_complete::Shell,
+}
+
+/// Where to.
+#[derive(Debug, clap::Args)]
+#[command(after_help = MAN_HELP)]
+pub struct ManOptions {
+    /// The folder for luminaire.1, luminaire-render.1 and so on; it is made if it is missing [default: only luminaire.1, to standard output].
+    #[arg(value_name = "DIR")]
+    pub folder: Option<PathBuf>,
 }
 
 /// What to join.
@@ -263,6 +336,7 @@ pub struct StabilityOptions {
 
 /// What to inspect.
 #[derive(Debug, clap::Args)]
+#[command(after_help = INSPECT_HELP)]
 pub struct InspectOptions {
     /// A scene file (.toml) or any OBJ file.
     pub scene: PathBuf,
@@ -499,16 +573,22 @@ fn stops(text: &str) -> Result<f32, String> {
 
 /// Says a line on stderr. A stderr that nobody reads is no reason to fail.
 pub fn tell(line: &str) {
-    let _ = writeln!(std::io::stderr(), "{line}");
+    let _ = writeln!(std::io::stderr(), "{}", harmless(line));
 }
 
 /// Prints a result on stdout. A reader that closes the pipe early (`| head`) is content with less.
 fn print(text: &str) -> luminaire::Result<()> {
     let mut out = std::io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+    match out.write_all(harmless(text).as_bytes()).and_then(|()| out.flush()) {
         Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(Error::write("standard output".as_ref(), e)),
         _ => Ok(()),
     }
+}
+
+/// A text without control characters: names come from files, and a terminal would obey.
+fn harmless(text: &str) -> Cow<'_, str> {
+    let control = |c: char| c.is_control() && c != '\n' && c != '\t';
+    if text.contains(control) { Cow::Owned(text.replace(control, "\u{fffd}")) } else { Cow::Borrowed(text) }
 }
 
 /// Rows with their columns aligned, each line indented by `indent` spaces.

@@ -4,7 +4,7 @@ use super::checkpoint::{self, Checkpoint};
 use super::progress::{Reporter, duration, percent};
 use super::stats::{Seconds, Stats};
 use super::{RenderOptions, print, tell};
-use luminaire::backend::{self, Backend, Opened, Request};
+use luminaire::backend::{self, Backend, Renderer, Request};
 use luminaire::film::{AovSum, Aovs, Batch, Film, Tile};
 use luminaire::measure::heat_map;
 use luminaire::part::Provenance;
@@ -179,7 +179,7 @@ impl Tracer for Losing<'_> {
 fn finish(
     options: &RenderOptions,
     scene: &Scene,
-    opened: &Opened,
+    opened: &Renderer,
     rendered: Rendered,
     aovs: Option<Aovs>,
     checkpoint: Option<&Checkpoint<'_>>,
@@ -261,7 +261,7 @@ fn wants_aovs(options: &RenderOptions) -> bool {
 fn write(
     options: &RenderOptions,
     scene: &Scene,
-    opened: &Opened,
+    opened: &Renderer,
     rendered: &Rendered,
     aovs: Option<&Aovs>,
     seconds: &mut Seconds,

@@ -3,7 +3,7 @@
 use super::{print, table};
 use glam::DVec3;
 use luminaire::Result;
-use luminaire::backend::{Backend, Opened};
+use luminaire::backend::{Backend, Renderer};
 use luminaire::film::{Batch, Tile};
 use luminaire::reference::Reference;
 use luminaire::reference::path::Vertex;
@@ -11,7 +11,7 @@ use luminaire::scene::Scene;
 use std::process::ExitCode;
 
 /// Prints the path of a sample in the reference, and its radiance there and on the backend.
-pub fn run(scene: &Scene, opened: &mut Opened, [x, y]: [u32; 2], sample: u32) -> Result<ExitCode> {
+pub fn run(scene: &Scene, renderer: &mut Renderer, [x, y]: [u32; 2], sample: u32) -> Result<ExitCode> {
     let (radiance, vertices) = Reference::new(scene).vertices(y * scene.film.width + x, sample);
     let mut text =
         format!("pixel {x},{y}, sample {sample}, seed {}; the path in the reference\n\n", scene.settings.seed);
@@ -19,14 +19,14 @@ pub fn run(scene: &Scene, opened: &mut Opened, [x, y]: [u32; 2], sample: u32) ->
     let rows = vertices.iter().enumerate().map(|(ray, vertex)| row(scene, ray, vertex));
     text += &table(2, &std::iter::once(head.into()).chain(rows).collect::<Vec<_>>());
     let mut ends = vec![vec!["reference".into(), triple(radiance)]];
-    if opened.backend != Backend::Cpu {
+    if renderer.backend != Backend::Cpu {
         let tile = Tile { x, y, width: 1, height: 1 };
-        let traced = opened.tracer.trace(&Batch { tile, samples: sample..sample + 1, group: 1 })?;
+        let traced = renderer.tracer.trace(&Batch { tile, samples: sample..sample + 1, group: 1 })?;
         let found = match traced.dropped.is_empty() {
             true => triple(traced.sums[0].radiance.into()),
             false => "not finite".into(),
         };
-        ends.push(vec![opened.backend.to_string(), found]);
+        ends.push(vec![renderer.backend.to_string(), found]);
     }
     text += &format!("\nradiance of the sample\n{}", table(2, &ends));
     print(&text)?;

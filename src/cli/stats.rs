@@ -1,6 +1,6 @@
 //! The figures of a run, as JSON.
 
-use luminaire::backend::Opened;
+use luminaire::backend::Renderer;
 use luminaire::render::{End, Rendered};
 use luminaire::scene::Scene;
 use serde::Serialize;
@@ -70,7 +70,7 @@ impl<'a> Stats<'a> {
     /// Gathers the figures.
     pub fn new(
         scene: &'a Scene,
-        opened: &'a Opened,
+        renderer: &'a Renderer,
         rendered: &Rendered,
         seconds: Seconds,
         outputs: &[std::path::PathBuf],
@@ -92,10 +92,10 @@ impl<'a> Stats<'a> {
             spp_least: rendered.film.least_samples(),
             spp_most: rendered.film.most_samples(),
             seed: scene.settings.seed,
-            backend: opened.backend.to_string(),
-            device: &opened.device,
-            driver: &opened.driver,
-            why: &opened.why,
+            backend: renderer.backend.to_string(),
+            device: &renderer.device,
+            driver: &renderer.driver,
+            why: &renderer.why,
             seconds,
             error: progress.error.map(|e| ErrorFigures {
                 relative: e.relative(),

@@ -25,6 +25,8 @@ pub struct Device {
     pub(crate) scratch_alignment: u64,
     pub(crate) max_instances: u64,
     pub(crate) max_primitives: u64,
+    /// Bytes of its largest device-local heap.
+    pub(super) memory: u64,
     /// Name of the device.
     pub name: String,
     /// True for a driver that runs on the CPU.
@@ -102,6 +104,7 @@ impl Device {
             scratch_alignment: physical.scratch_alignment,
             max_instances: physical.max_instances,
             max_primitives: physical.max_primitives,
+            memory: physical.memory,
             software: physical.is_software(),
             name,
             _instance: instance.clone(),

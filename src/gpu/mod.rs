@@ -3,6 +3,7 @@
 //! Each object holds an `Arc<Device>`; the device owns the instance, the allocator and the queue and drops them in order.
 //! A raw handle is wrapped the moment it exists, so an early return cannot leak it.
 
+mod budget;
 mod buffer;
 mod commands;
 #[cfg(feature = "shaderc")]

@@ -1,5 +1,6 @@
 //! A scene as the kernels see it: buffers, converted from the plain data.
 
+use super::budget::Budget;
 use super::model::KernelModel;
 use super::{Binding, Buffer, Device, TexelBuffer, layout};
 use crate::Result;
@@ -41,6 +42,7 @@ impl GpuScene {
         let table = LuminaireTable::new(scene);
         let mut model = KernelModel::with(scene, &table);
         adjust(&mut model);
+        Budget::of(scene, ray_query, &model).check(device)?;
         let (geometry, places) = Geometry::build(device, scene, ray_query, &model)?;
         let materials: Vec<_> = (0..scene.materials.len()).map(|i| material(scene, &table, i)).collect();
         let luminaires = luminaires(scene, &table, &places);

@@ -1,5 +1,6 @@
 //! Images from disk, in whatever format the `image` crate decodes.
 
+use crate::memory::{available, gib};
 use half::f16;
 use image::{DynamicImage, ImageDecoder, ImageError, ImageReader, Limits};
 use rayon::prelude::*;
@@ -10,6 +11,9 @@ use std::sync::LazyLock;
 const LARGEST_SIDE: u32 = 16_384;
 /// Most bytes of memory that decoding may take: a small file can claim to be an enormous picture.
 const MOST_MEMORY: u64 = 1 << 30;
+
+/// Most bytes that all but the texels may take, colour profiles for example: they are compressed too.
+const MOST_HEADER: u64 = 16 << 20;
 
 /// So many texels are worth another thread.
 pub(crate) const CHUNK: usize = 1 << 14;
@@ -58,7 +62,7 @@ impl ImageFile {
         let mut limits = Limits::default();
         limits.max_image_width = Some(LARGEST_SIDE);
         limits.max_image_height = Some(LARGEST_SIDE);
-        limits.max_alloc = Some(MOST_MEMORY);
+        limits.max_alloc = Some(MOST_HEADER);
         reader.limits(limits.clone());
         let mut decoder = reader.into_decoder().map_err(in_words)?;
         let (width, height) = decoder.dimensions();
@@ -66,7 +70,9 @@ impl ImageFile {
         if texels > most {
             return Err(too_many(texels));
         }
+        limits.max_alloc = Some(MOST_MEMORY);
         // What the decoder takes for itself may be on top of the picture.
+        check_memory(&decoder, available())?;
         limits.reserve(decoder.total_bytes()).map_err(in_words)?;
         decoder.set_limits(limits).map_err(in_words)?;
         let image = DynamicImage::from_decoder(decoder).map_err(in_words)?;
@@ -160,6 +166,22 @@ impl ImageFile {
     }
 }
 
+/// Refuses what the memory that is free cannot take: the picture as it is stored, as four channels, and as half floats.
+fn check_memory(decoder: &impl ImageDecoder, available: Option<u64>) -> Result<(), String> {
+    let colour = decoder.color_type();
+    let (width, height) = decoder.dimensions();
+    let channel = u64::from(colour.bytes_per_pixel() / colour.channel_count().max(1));
+    let needed = decoder.total_bytes() + u64::from(width) * u64::from(height) * (4 * channel + 8);
+    match available {
+        Some(free) if needed > free => Err(format!(
+            "it has {width} x {height} texels, which take {} of memory, of which {} are free: make it smaller",
+            gib(needed),
+            gib(free)
+        )),
+        _ => Ok(()),
+    }
+}
+
 /// What a decoder complains about.
 fn in_words(error: ImageError) -> String {
     match error {
@@ -180,6 +202,18 @@ fn linear(srgb: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_memory_cannot_take_is_refused() {
+        let mut png = Vec::new();
+        image::RgbImage::new(100, 10).write_to(&mut std::io::Cursor::new(&mut png), image::ImageFormat::Png).unwrap();
+        let decoder = image::codecs::png::PngDecoder::new(std::io::Cursor::new(png)).unwrap();
+        // 3 bytes a texel in the file, then 4, then 8.
+        assert_eq!(check_memory(&decoder, Some(15_000)), Ok(()));
+        let error = check_memory(&decoder, Some(14_999)).unwrap_err();
+        assert!(error.contains("100 x 10") && error.contains("make it smaller"), "{error}");
+        assert_eq!(check_memory(&decoder, None), Ok(()));
+    }
 
     #[test]
     fn tables_hold_what_the_formula_gives() {

@@ -239,7 +239,8 @@ fn seen_from(from: DVec3, corners: [DVec3; 3]) -> [DVec3; 3] {
 fn weights_along(origin: DVec3, direction: DVec3, [a, b, c]: [DVec3; 3]) -> [f64; 3] {
     let (ab, ac, to_origin) = (b - a, c - a, origin - a);
     let determinant = direction.cross(ac).dot(ab);
-    let b1 = (to_origin.dot(direction.cross(ac)) / determinant).clamp(0.0, 1.0);
-    let b2 = (direction.dot(to_origin.cross(ab)) / determinant).clamp(0.0, 1.0 - b1);
+    // `max` makes 0 of 0 / 0, a ray within the plane of the triangle.
+    let b1 = (to_origin.dot(direction.cross(ac)) / determinant).clamp(0.0, 1.0).max(0.0);
+    let b2 = (direction.dot(to_origin.cross(ab)) / determinant).clamp(0.0, 1.0 - b1).max(0.0);
     [1.0 - b1 - b2, b1, b2]
 }

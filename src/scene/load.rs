@@ -1,6 +1,7 @@
 //! From a path to a [`Scene`].
 
 use super::material::{Draft, DraftMaps};
+use super::text::shortened;
 use super::texture::Textures;
 use super::{Maps, Material, Mesh, Object, Scene, Texture, mtl, obj, preview, toml};
 use crate::{Error, Result};
@@ -17,7 +18,7 @@ const LARGEST_COORDINATE: f64 = 1e18;
 /// [`Error::Usage`] for another ending; otherwise if a file cannot be read or is wrong, with file and line.
 pub fn load(path: &Path) -> Result<Scene> {
     let ending = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
-    let scene = match ending.as_str() {
+    let mut scene = match ending.as_str() {
         "toml" => toml::load(path)?,
         "obj" => preview::load(path)?,
         _ => {
@@ -27,6 +28,12 @@ pub fn load(path: &Path) -> Result<Scene> {
             )));
         }
     };
+    for warning in &mut scene.warnings {
+        // Names come from files, and a terminal would obey.
+        if warning.contains(char::is_control) {
+            *warning = warning.replace(char::is_control, "\u{fffd}");
+        }
+    }
     let (low, high) = scene.world_bounds();
     let largest = low.abs().max(high.abs()).max_element();
     if largest > LARGEST_COORDINATE {
@@ -135,17 +142,28 @@ impl Loader {
         own.or_else(any).or_else(|| self.define(name))
     }
 
+    /// The names that [`Loader::material`] knows, for a message.
+    pub(super) fn material_names(&self) -> String {
+        let mut said = HashSet::new();
+        let names = self.drafts.iter().chain(&self.overrides).map(|draft| draft.name.as_str());
+        let names: Vec<_> = names.filter(|name| said.insert(*name)).collect();
+        listed(names.into_iter())
+    }
+
     /// Applies the scene file's materials, fills in every default and loads the textures. Only materials that some triangle of
     /// `objects` shows are worth a warning or a texture.
     pub(super) fn finish_materials(&mut self, objects: &[Object]) -> (Vec<Material>, Vec<Texture>) {
         let shown = self.shown(objects);
-        for change in &self.overrides {
-            let mut known = false;
-            for (index, draft) in self.drafts.iter_mut().enumerate().filter(|(_, draft)| draft.name == change.name) {
-                draft.overlay(change);
+        let changes: HashMap<&str, usize> = (0..).zip(&self.overrides).map(|(i, change)| (&*change.name, i)).collect();
+        let mut known = vec![false; self.overrides.len()];
+        for (index, draft) in self.drafts.iter_mut().enumerate() {
+            if let Some(&change) = changes.get(&*draft.name) {
+                draft.overlay(&self.overrides[change]);
                 // The fallback is always there: what changes it changes something only where it is seen.
-                known |= index > 0 || shown[0];
+                known[change] |= index > 0 || shown[0];
             }
+        }
+        for (change, known) in self.overrides.iter().zip(known) {
             if !known {
                 self.warnings.push(format!("the material `{}` of the scene file is not used by anything", change.name));
             }
@@ -168,9 +186,11 @@ impl Loader {
     /// For each material, whether some triangle of `objects` shows it.
     fn shown(&self, objects: &[Object]) -> Vec<bool> {
         let mut shown = vec![false; self.drafts.len()];
+        let mut seen = vec![false; self.meshes.len()];
         for object in objects {
             match object.material {
                 Some(material) => shown[material as usize] = true,
+                None if std::mem::replace(&mut seen[object.mesh as usize], true) => {}
                 None => {
                     let triangles = &self.meshes[object.mesh as usize].triangles;
                     triangles.iter().for_each(|triangle| shown[triangle.material as usize] = true);
@@ -183,12 +203,14 @@ impl Loader {
     /// One warning for all materials of a file that ask for the same.
     fn warn_of_ignored(&mut self, shown: &[bool]) {
         let mut groups: Vec<(&(String, String), Vec<&str>)> = Vec::new();
+        let mut group_of: HashMap<&(String, String), usize> = HashMap::new();
         for (draft, _) in self.drafts.iter().zip(shown).filter(|(_, shown)| **shown) {
             let Some(ignored) = &draft.ignored else { continue };
-            match groups.iter_mut().find(|(other, _)| *other == ignored) {
-                Some((_, names)) => names.push(&draft.name),
-                None => groups.push((ignored, vec![&draft.name])),
+            let group = *group_of.entry(ignored).or_insert(groups.len());
+            if group == groups.len() {
+                groups.push((ignored, Vec::new()));
             }
+            groups[group].1.push(&draft.name);
         }
         for ((file, what), names) in groups {
             let noun = if names.len() == 1 { "material" } else { "materials" };
@@ -200,7 +222,8 @@ impl Loader {
     /// Maps need texture coordinates.
     fn warn_of_missing_uvs(&mut self, objects: &[Object], materials: &[Material]) {
         let mut said = HashSet::new();
-        for object in objects {
+        let mut seen = HashSet::new();
+        for object in objects.iter().filter(|object| seen.insert((object.mesh, object.material))) {
             for WithoutUv { material, at } in &self.without_uv[object.mesh as usize] {
                 let material = &materials[object.material.unwrap_or(*material) as usize];
                 if material.maps != Maps::default() && said.insert((&material.name, at)) {
@@ -257,7 +280,7 @@ impl Loader {
 fn listed<'a>(names: impl ExactSizeIterator<Item = &'a str>) -> String {
     const MOST: usize = 8;
     let more = names.len().saturating_sub(MOST);
-    let text = names.take(MOST).map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+    let text = names.take(MOST).map(|name| format!("`{}`", shortened(name))).collect::<Vec<_>>().join(", ");
     if more > 0 { format!("{text} and {more} more") } else { text }
 }
 

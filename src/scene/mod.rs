@@ -18,6 +18,7 @@ mod mtl;
 mod obj;
 mod obj_faces;
 mod obj_text;
+mod polygon;
 mod preview;
 mod surface;
 mod text;

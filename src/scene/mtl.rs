@@ -5,13 +5,20 @@
 
 use super::map_options;
 use super::material::{DEFAULT_ETA, Draft, ETAS, LARGEST_EXPONENT, MapDraft};
-use super::text::{Tally, read_text};
+use super::text::{Tally, read_text, shortened};
 use crate::Result;
 use glam::Vec3;
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::path::Path;
 
 /// A mirror-like `Ks` with at least this exponent, or with none, is a perfect mirror.
 const MIRROR_EXPONENT: f32 = 1000.0;
+
+/// So many warnings about one file are kept.
+const MOST_WARNINGS: usize = 100;
+/// So many features that nothing models are named for a material.
+const MOST_IGNORED: usize = 32;
 
 /// Reads an MTL file: `Ka Kd Ks Ns Ke Ni Tf d Tr illum` and the maps of the colours and of `d`. What `illum` makes of them is a
 /// table in `scenes/README.md`.
@@ -26,6 +33,8 @@ pub(super) fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Vec<Draft>
         line: 0,
         current: None,
         drafts: Vec::new(),
+        by_name: HashMap::new(),
+        said: 0,
         orphans: Tally::default(),
         unknown: Tally::default(),
         unknown_keyword: String::new(),
@@ -38,6 +47,9 @@ pub(super) fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Vec<Draft>
     reader.orphans.warn(path, "a statement before the first newmtl is ignored", reader.warnings);
     let unknown = format!("a statement with the unknown keyword `{}` is ignored", reader.unknown_keyword);
     reader.unknown.warn(path, &unknown, reader.warnings);
+    if reader.said > MOST_WARNINGS {
+        reader.warnings.push(format!("{}: and {} more warnings", path.display(), reader.said - MOST_WARNINGS));
+    }
     Ok(reader.drafts)
 }
 
@@ -63,6 +75,10 @@ struct Reader<'a> {
     line: usize,
     current: Option<Current>,
     drafts: Vec<Draft>,
+    /// Where in `drafts` the material of a name is.
+    by_name: HashMap<String, usize>,
+    /// Warnings of this file, those that were not kept included.
+    said: usize,
     orphans: Tally,
     unknown: Tally,
     unknown_keyword: String,
@@ -70,7 +86,14 @@ struct Reader<'a> {
 
 impl Reader<'_> {
     fn warn(&mut self, message: &str) {
-        self.warnings.push(format!("{}:{}: {message}", self.path.display(), self.line));
+        self.say(format!("{}:{}: {message}", self.path.display(), self.line));
+    }
+
+    fn say(&mut self, warning: String) {
+        self.said += 1;
+        if self.said <= MOST_WARNINGS {
+            self.warnings.push(warning);
+        }
     }
 
     fn statement(&mut self, line: &str) {
@@ -117,12 +140,12 @@ impl Reader<'_> {
             },
             "Km" | "Kt" | "sharpness" => {}
             "Pr" | "Pm" | "Ps" | "Pc" | "Pcr" | "aniso" | "anisor" | "bump" | "disp" | "decal" | "refl" | "norm" => {
-                current.ignore(keyword.to_owned());
+                current.ignore(shortened(keyword).into_owned());
             }
             map if map.to_ascii_lowercase().starts_with("map_") => self.map(map, rest, &mut current),
             other => {
                 if self.unknown_keyword.is_empty() {
-                    self.unknown_keyword = other.to_owned();
+                    self.unknown_keyword = shortened(other).into_owned();
                 }
                 self.unknown.add(self.line);
             }
@@ -139,7 +162,7 @@ impl Reader<'_> {
             "map_ks" => &mut maps.glossy,
             "map_ke" => &mut maps.emission,
             "map_d" => &mut maps.opacity,
-            _ => return current.ignore(keyword.to_owned()),
+            _ => return current.ignore(shortened(keyword).into_owned()),
         };
         let folder = self.path.parent().unwrap_or(Path::new(""));
         match map_options::parse(rest, folder, format!("{}:{}", self.path.display(), self.line)) {
@@ -163,11 +186,16 @@ impl Reader<'_> {
         if !ignored.is_empty() {
             draft.ignored = Some((self.path.display().to_string(), ignored.join(", ")));
         }
-        if self.drafts.iter().any(|other| other.name == draft.name) {
-            self.warnings.push(format!("{at} is defined twice; the later one counts"));
-            self.drafts.retain(|other| other.name != draft.name);
+        match self.by_name.entry(draft.name.clone()) {
+            Entry::Vacant(place) => {
+                place.insert(self.drafts.len());
+                self.drafts.push(draft);
+            }
+            Entry::Occupied(place) => {
+                self.drafts[*place.get()] = draft;
+                self.say(format!("{at} is defined twice; the later one counts"));
+            }
         }
-        self.drafts.push(draft);
     }
 
     /// One number for all channels, or three; none if it is wrong, which is a warning.
@@ -178,7 +206,10 @@ impl Reader<'_> {
             Some([grey]) => Vec3::splat(*grey),
             Some([r, g, b]) => Vec3::new(*r, *g, *b),
             _ => {
-                self.warn(&format!("{keyword} needs three finite numbers, found `{}`; ignored", words.join(" ")));
+                self.warn(&format!(
+                    "{keyword} needs three finite numbers, found `{}`; ignored",
+                    shortened(&words.join(" "))
+                ));
                 return None;
             }
         };
@@ -213,7 +244,10 @@ impl Reader<'_> {
         let number = words.first().and_then(|word| word.parse().ok()).filter(|n: &f32| n.is_finite() && *n >= least);
         if number.is_none() {
             let least = if least.is_finite() { format!(" of at least {least}") } else { String::new() };
-            self.warn(&format!("{keyword} needs a finite number{least}, found `{}`; ignored", words.join(" ")));
+            self.warn(&format!(
+                "{keyword} needs a finite number{least}, found `{}`; ignored",
+                shortened(&words.join(" "))
+            ));
         }
         number
     }
@@ -221,7 +255,7 @@ impl Reader<'_> {
 
 impl Current {
     fn ignore(&mut self, what: String) {
-        if !self.ignored.contains(&what) {
+        if self.ignored.len() < MOST_IGNORED && !self.ignored.contains(&what) {
             self.ignored.push(what);
         }
     }

@@ -23,7 +23,7 @@ pub(super) struct Obj {
     pub warnings: Vec<String>,
 }
 
-/// Reads an OBJ file: all its groups in one mesh, polygons split into fans, zero-area triangles dropped. `smooth` makes vertex
+/// Reads an OBJ file: all its groups in one mesh, polygons cut into triangles, zero-area triangles dropped. `smooth` makes vertex
 /// normals where the file has none: faces share them that differ by less than so many degrees.
 ///
 /// # Errors

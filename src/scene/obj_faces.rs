@@ -1,7 +1,9 @@
 //! The faces of an OBJ file, and the vertex normals that are made from them.
 
+use super::polygon::{self, Cut, Fault};
+use super::text::Tally;
 use glam::{DVec3, Vec3};
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::fmt::Write;
 
 /// More faces than this at one point get no normal there by angle: each is compared with each.
@@ -23,6 +25,19 @@ struct Face {
     material: u32,
     /// 0 for none.
     smoothing_group: u32,
+    /// In the file, for warnings.
+    line: u32,
+}
+
+/// Polygons that are not what they should be.
+#[derive(Debug, Default)]
+pub(super) struct Faults {
+    /// [`Fault::Tangled`].
+    pub tangled: Tally,
+    /// [`Fault::NotFlat`].
+    pub not_flat: Tally,
+    /// [`Fault::TooLarge`].
+    pub too_large: Tally,
 }
 
 /// A corner, seen from the point at which it lies.
@@ -39,8 +54,8 @@ struct Incident {
 
 impl Faces {
     /// The corners that were added since the last face are the next one.
-    pub(super) fn end_face(&mut self, material: u32, smoothing_group: u32) {
-        self.faces.push(Face { end: self.corners.len() as u32, material, smoothing_group });
+    pub(super) fn end_face(&mut self, material: u32, smoothing_group: u32, line: usize) {
+        self.faces.push(Face { end: self.corners.len() as u32, material, smoothing_group, line: line as u32 });
     }
 
     /// A normal for each corner of a face that has a smoothing group and no normals of its own: the mean over the faces of the
@@ -54,16 +69,14 @@ impl Faces {
         }
         let mut normals = vec![None; self.corners.len()];
         for incidents in self.points(positions) {
-            let mut sums: Vec<(u32, DVec3)> = Vec::new();
+            let mut sums: BTreeMap<u32, DVec3> = BTreeMap::new();
             for at in incidents.iter().filter(|at| at.smoothing_group > 0) {
-                match sums.iter_mut().find(|(group, _)| *group == at.smoothing_group) {
-                    Some((_, sum)) => *sum += at.angle * at.normal,
-                    None => sums.push((at.smoothing_group, at.angle * at.normal)),
-                }
+                let part = at.angle * at.normal;
+                sums.entry(at.smoothing_group).and_modify(|sum| *sum += part).or_insert(part);
             }
             for at in &incidents {
-                let sum = sums.iter().find(|(group, _)| *group == at.smoothing_group);
-                normals[at.corner] = sum.and_then(|(_, sum)| sum.try_normalize()).map(DVec3::as_vec3);
+                let sum = sums.get(&at.smoothing_group);
+                normals[at.corner] = sum.and_then(|sum| sum.try_normalize()).map(DVec3::as_vec3);
             }
         }
         let mut first = 0;
@@ -95,9 +108,17 @@ impl Faces {
         normals
     }
 
-    /// `usemtl` and `f` lines. `made` are further normals, appended to `vertices`; `totals` says how many vertices, texture
-    /// coordinates and normals that text has. One past the last texture coordinate stands for none.
-    pub(super) fn text(&self, totals: [usize; 3], made: &[Option<Vec3>], vertices: &mut String) -> String {
+    /// `usemtl` and `f` lines; only polygons that a fan covers have more than three corners. `made` are further normals,
+    /// appended to `vertices`; `totals` says how many vertices, texture coordinates and normals that text has. One past the last
+    /// texture coordinate stands for none.
+    pub(super) fn text(
+        &self,
+        positions: &[Vec3],
+        totals: [usize; 3],
+        made: &[Option<Vec3>],
+        vertices: &mut String,
+        faults: &mut Faults,
+    ) -> String {
         const WRITES: &str = "writing to a string";
         let mut text = String::new();
         let has_normals = totals[2] > 0 || made.iter().any(Option::is_some);
@@ -109,29 +130,56 @@ impl Faces {
                 next
             })
         };
-        let (mut corner, mut material) = (0, 0);
+        let mut write = |text: &mut String, corner: usize| {
+            let [vertex, uv, normal] = self.corners[corner];
+            write!(text, " {vertex}").expect(WRITES);
+            if totals[1] > 0 {
+                let uv = if uv == 0 { totals[1] + 1 } else { uv as usize };
+                write!(text, "/{uv}").expect(WRITES);
+            }
+            if has_normals {
+                let normal = match (normal, made.get(corner).copied().flatten()) {
+                    (0, normal) => index_of(normal.unwrap_or(Vec3::ZERO)),
+                    (normal, _) => normal as usize,
+                };
+                write!(text, "{}/{normal}", if totals[1] > 0 { "" } else { "/" }).expect(WRITES);
+            }
+        };
+        let (mut first, mut material) = (0, 0);
+        let mut outline: Vec<DVec3> = Vec::new();
         for (corners, face) in self.iter() {
             if face.material != material {
                 material = face.material;
                 writeln!(text, "usemtl {}", material - 1).expect(WRITES);
             }
-            text.push('f');
-            for &[vertex, uv, normal] in corners {
-                write!(text, " {vertex}").expect(WRITES);
-                if totals[1] > 0 {
-                    let uv = if uv == 0 { totals[1] + 1 } else { uv as usize };
-                    write!(text, "/{uv}").expect(WRITES);
+            let mut triangles = None;
+            if corners.len() > 3 {
+                outline.clear();
+                outline.extend(corners.iter().map(|[vertex, ..]| positions[*vertex as usize - 1].as_dvec3()));
+                let Cut { triangles: cut, fault } = polygon::cut(&outline);
+                triangles = cut;
+                match fault {
+                    None => {}
+                    Some(Fault::Tangled) => faults.tangled.add(face.line as usize),
+                    Some(Fault::NotFlat) => faults.not_flat.add(face.line as usize),
+                    Some(Fault::TooLarge) => faults.too_large.add(face.line as usize),
                 }
-                if has_normals {
-                    let normal = match (normal, made.get(corner).copied().flatten()) {
-                        (0, normal) => index_of(normal.unwrap_or(Vec3::ZERO)),
-                        (normal, _) => normal as usize,
-                    };
-                    write!(text, "{}/{normal}", if totals[1] > 0 { "" } else { "/" }).expect(WRITES);
-                }
-                corner += 1;
             }
-            text.push('\n');
+            match triangles {
+                None => {
+                    text.push('f');
+                    (first..first + corners.len()).for_each(|corner| write(&mut text, corner));
+                    text.push('\n');
+                }
+                Some(triangles) => {
+                    for triangle in triangles {
+                        text.push('f');
+                        triangle.iter().for_each(|corner| write(&mut text, first + *corner as usize));
+                        text.push('\n');
+                    }
+                }
+            }
+            first += corners.len();
         }
         text
     }

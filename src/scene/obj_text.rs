@@ -4,12 +4,13 @@
 //! takes `l` lines for faces, and wants every vertex coloured if one is. So each line is checked here first, and `tobj` receives
 //! plain `v`, `vt`, `vn`, `usemtl` and `f` lines with absolute, valid indices.
 
-use super::obj_faces::Faces;
-use super::text::Tally;
+use super::obj_faces::{Faces, Faults};
+use super::polygon::MOST_CORNERS;
+use super::text::{Tally, shortened};
 use crate::{Error, Result};
 use glam::Vec3;
 use std::borrow::Cow;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -72,7 +73,8 @@ fn logical_lines(text: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
                 }
             }
         }
-        Some((number, Cow::Owned(joined)))
+        // A line of nothing but a backslash leaves a blank in front.
+        Some((number, Cow::Owned(joined.trim().to_owned())))
     })
 }
 
@@ -99,6 +101,8 @@ struct Scan<'a> {
     material: usize,
     smoothing_group: u32,
     by_name: HashMap<String, usize>,
+    /// The materials of `out.without_uv`.
+    without_uv: HashSet<usize>,
     out: ObjText,
     short_faces: Tally,
     unknown: Tally,
@@ -120,6 +124,7 @@ impl<'a> Scan<'a> {
             material: 0,
             smoothing_group: 0,
             by_name: HashMap::new(),
+            without_uv: HashSet::new(),
             out: ObjText::default(),
             short_faces: Tally::default(),
             unknown: Tally::default(),
@@ -151,7 +156,7 @@ impl<'a> Scan<'a> {
             comment if comment.starts_with('#') => {}
             other => {
                 if self.unknown_keyword.is_empty() {
-                    self.unknown_keyword = other.to_owned();
+                    self.unknown_keyword = shortened(other).into_owned();
                 }
                 self.unknown.add(number);
             }
@@ -165,7 +170,7 @@ impl<'a> Scan<'a> {
     fn number(&self, line: usize, word: &str) -> Result<f32> {
         match word.parse() {
             Ok(number) => Ok(number),
-            Err(_) => self.error(line, format!("`{word}` is not a number")),
+            Err(_) => self.error(line, format!("`{}` is not a number", shortened(word))),
         }
     }
 
@@ -196,7 +201,7 @@ impl<'a> Scan<'a> {
         let [x, y, z, w] = numbers;
         let position = Vec3::new(x / w, y / w, z / w);
         if !position.is_finite() {
-            return self.error(line, format!("the vertex {} is not finite", kept[..used].join(" ")));
+            return self.error(line, format!("the vertex {} is not finite", shortened(&kept[..used].join(" "))));
         }
         self.positions.push(position);
         self.out.vertices.push_str("v ");
@@ -285,7 +290,8 @@ impl<'a> Scan<'a> {
                 }
             }
             if parts.next().is_some() {
-                return self.error(line, format!("`{word}` is not a corner; expected v, v/vt, v//vn or v/vt/vn"));
+                return self
+                    .error(line, format!("`{}` is not a corner; expected v, v/vt, v//vn or v/vt/vn", shortened(word)));
             }
             self.faces.corners.push(indices.map(|index| index as u32));
         }
@@ -295,10 +301,10 @@ impl<'a> Scan<'a> {
             return Ok(());
         }
         let lacks_uv = self.faces.corners[first..].iter().any(|[_, uv, _]| *uv == 0);
-        if lacks_uv && !self.out.without_uv.iter().any(|(material, _)| *material == self.material) {
+        if lacks_uv && self.without_uv.insert(self.material) {
             self.out.without_uv.push((self.material, line));
         }
-        self.faces.end_face(self.material as u32, self.smoothing_group);
+        self.faces.end_face(self.material as u32, self.smoothing_group, line);
         Ok(())
     }
 
@@ -306,12 +312,14 @@ impl<'a> Scan<'a> {
     fn index(&mut self, line: usize, word: &str, kind: usize, part: &str) -> Result<usize> {
         let name = KINDS[kind];
         let (total, count) = (self.totals[kind], self.counts[kind]);
+        let shown = shortened(word);
         let Ok(index) = part.parse::<i64>() else {
+            let part = shortened(part);
             return self
-                .error(line, format!("`{word}`: the {name} index `{part}` is not a whole number within 64 bits"));
+                .error(line, format!("`{shown}`: the {name} index `{part}` is not a whole number within 64 bits"));
         };
         if index == 0 {
-            return self.error(line, format!("`{word}`: the {name} index is 0, but OBJ files count from 1"));
+            return self.error(line, format!("`{shown}`: the {name} index is 0, but OBJ files count from 1"));
         }
         if kind > 0 && total == 0 {
             self.dangling[kind].add(line);
@@ -321,13 +329,15 @@ impl<'a> Scan<'a> {
         if absolute < 1 {
             return self.error(
                 line,
-                format!("`{word}`: the relative {name} index {index} is out of range, {count} {name} lines precede it"),
+                format!(
+                    "`{shown}`: the relative {name} index {index} is out of range, {count} {name} lines precede it"
+                ),
             );
         }
         if absolute > total as i64 {
             return self.error(
                 line,
-                format!("`{word}`: the {name} index {index} is out of range, the file has {total} {name} lines"),
+                format!("`{shown}`: the {name} index {index} is out of range, the file has {total} {name} lines"),
             );
         }
         Ok(absolute as usize)
@@ -343,13 +353,24 @@ impl<'a> Scan<'a> {
             Some(degrees) if !has_normals => self.faces.normals_by_angle(&self.positions, degrees),
             _ => self.faces.normals_by_group(&self.positions),
         };
-        self.out.faces = self.faces.text(self.totals, &made, &mut self.out.vertices);
+        let mut faults = Faults::default();
+        self.out.faces = self.faces.text(&self.positions, self.totals, &made, &mut self.out.vertices, &mut faults);
         let warnings = &mut self.out.warnings;
         if smooth.is_some() && has_normals {
             let path = self.path.display();
             warnings.push(format!("{path}: `smooth` is ignored: the file has vertex normals of its own (vn)"));
         }
         self.short_faces.warn(self.path, "a face with fewer than 3 corners is skipped", warnings);
+        let Faults { tangled, not_flat, too_large } = faults;
+        tangled.warn(
+            self.path,
+            "a polygon whose outline crosses or covers itself; its triangles are a guess",
+            warnings,
+        );
+        not_flat.warn(self.path, "a polygon whose corners do not lie in a plane; its triangles are a guess", warnings);
+        let too_large_what =
+            format!("a polygon of more than {MOST_CORNERS} corners that is not convex; it is cut as if it were");
+        too_large.warn(self.path, &too_large_what, warnings);
         let unknown = format!("a line with the keyword `{}`, which is not modelled, is skipped", self.unknown_keyword);
         self.unknown.warn(self.path, &unknown, warnings);
         self.dangling[1].warn(self.path, "a texture coordinate index, but the file has none; ignored", warnings);

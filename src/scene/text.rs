@@ -1,20 +1,60 @@
 //! Text files as people really save them: with a byte-order mark, Windows line ends, stray bytes.
 
+use crate::memory::{available, gib};
 use crate::{Error, Result};
+use std::borrow::Cow;
 use std::path::Path;
+
+/// Most bytes of a text file: below this no count of anything in it can leave 32 bits.
+const MOST_BYTES: u64 = u32::MAX as u64;
+/// Memory that reading takes, for each byte of the file: 5 were measured on a mesh of 87 MB.
+const MEMORY: u64 = 6;
+
+/// The bytes of a regular file.
+///
+/// # Errors
+/// If it cannot be read, is none (a pipe or a device may never end), or is larger than what the memory that is free can take.
+pub(super) fn read_bytes(path: &Path) -> Result<Vec<u8>> {
+    let about = std::fs::metadata(path).map_err(|e| Error::read(path, e))?;
+    if !about.is_file() {
+        return Err(Error::read(path, if about.is_dir() { "it is a folder" } else { "it is not a regular file" }));
+    }
+    check_size(about.len(), available()).map_err(|reason| Error::read(path, reason))?;
+    std::fs::read(path).map_err(|e| Error::read(path, e))
+}
+
+/// Says why a file of so many bytes is too large.
+fn check_size(bytes: u64, available: Option<u64>) -> std::result::Result<(), String> {
+    if bytes > MOST_BYTES {
+        return Err(format!("it has {}, and at most 4 GiB are read: split it into several meshes", gib(bytes)));
+    }
+    match available {
+        Some(free) if MEMORY * bytes > free => Err(format!(
+            "it has {}, and reading it takes about {} of memory, of which {} are free: use a smaller mesh, or split it",
+            gib(bytes),
+            gib(MEMORY * bytes),
+            gib(free)
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// A word from a file for a message, not too long.
+pub(super) fn shortened(word: &str) -> Cow<'_, str> {
+    const MOST: usize = 80;
+    match word.char_indices().nth(MOST) {
+        None => Cow::Borrowed(word),
+        Some((end, _)) => Cow::Owned(format!("{}... ({} bytes)", &word[..end], word.len())),
+    }
+}
 
 /// Reads a text file. A UTF-8 byte-order mark is dropped, and bytes that are not UTF-8 become U+FFFD: they sit in comments
 /// and names, where they do no harm.
 ///
 /// # Errors
-/// If the file cannot be read, is UTF-16, or holds a NUL byte (then it is binary or damaged).
+/// As for [`read_bytes`], and if the file is UTF-16, or holds a NUL byte (then it is binary or damaged).
 pub(super) fn read_text(path: &Path) -> Result<String> {
-    let about = std::fs::metadata(path).map_err(|e| Error::read(path, e))?;
-    if !about.is_file() {
-        // A pipe or a device may never end.
-        return Err(Error::read(path, if about.is_dir() { "it is a folder" } else { "it is not a regular file" }));
-    }
-    let bytes = std::fs::read(path).map_err(|e| Error::read(path, e))?;
+    let bytes = read_bytes(path)?;
     if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
         return Err(Error::read(path, "it is UTF-16 text; save it as UTF-8"));
     }
@@ -66,7 +106,22 @@ impl Tally {
 
 #[cfg(test)]
 mod tests {
-    use super::line_and_column;
+    use super::{check_size, line_and_column, shortened};
+
+    #[test]
+    fn files_that_memory_cannot_hold_are_refused() {
+        assert!(check_size(1 << 30, Some(8 << 30)).is_ok() && check_size(1 << 30, None).is_ok());
+        let error = check_size(2 << 30, Some(8 << 30)).unwrap_err();
+        assert!(["2.0 GiB", "12.0 GiB", "8.0 GiB are free"].iter().all(|part| error.contains(part)), "{error}");
+        assert!(check_size(5 << 30, None).unwrap_err().contains("at most 4 GiB"));
+    }
+
+    #[test]
+    fn long_words_are_cut_between_characters() {
+        assert_eq!(shortened("ab"), "ab");
+        let word = "\u{e9}".repeat(100);
+        assert_eq!(shortened(&word), format!("{}... (200 bytes)", "\u{e9}".repeat(80)));
+    }
 
     #[test]
     fn positions_count_characters_from_one() {

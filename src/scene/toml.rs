@@ -2,7 +2,7 @@
 
 use super::load::Loader;
 use super::material::{Draft, DraftMaps, MapDraft};
-use super::text::line_and_column;
+use super::text::{line_and_column, read_bytes, shortened};
 use super::texture::MapFile;
 use super::toml_tables::{LuminaireKind, LuminaireTable, MaterialTable, ObjectTable, Scale, SceneFile};
 use super::toml_values::Triple;
@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 
 /// Loads a scene file.
 pub(super) fn load(path: &Path) -> Result<Scene> {
-    let bytes = std::fs::read(path).map_err(|error| Error::read(path, error))?;
+    let bytes = read_bytes(path)?;
     let text = std::str::from_utf8(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes)).map_err(|error| {
         let line = 1 + bytes[..error.valid_up_to()].iter().filter(|byte| **byte == b'\n').count();
         Error::Parse { path: path.to_owned(), line, column: 0, message: "a scene file has to be UTF-8 text".into() }
@@ -194,8 +194,9 @@ impl File<'_> {
             None => None,
             Some(name) => Some(loader.material(mesh, name.get_ref()).ok_or_else(|| {
                 let message = format!(
-                    "there is no material `{}`: neither an MTL file nor a [[material]] defines it",
-                    name.get_ref()
+                    "there is no material `{}`: neither an MTL file nor a [[material]] defines it; there are {}",
+                    shortened(name.get_ref()),
+                    loader.material_names()
                 );
                 self.error(name.span(), message)
             })?),

@@ -87,10 +87,10 @@ impl Lane {
         self.work = Some(Work {
             sight: sight.clone(),
             coarseness,
-            before,
             // One sample is enough where a finer picture follows.
             schedule: Schedule::of(&film, if coarseness == 1 { spp } else { 1 }),
             film,
+            before,
             rays: 0,
             seconds: 0.0,
             error: None,

@@ -1,8 +1,10 @@
 //! What a user relies on when a scene is loaded: what loads, what is repaired with a warning, and what each error says.
 
+mod hostile;
 mod mtl;
 mod obj;
 mod own_scenes;
+mod polygons;
 mod settings;
 mod smoothing;
 mod textures;

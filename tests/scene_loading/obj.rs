@@ -12,6 +12,7 @@ fn endings_of_lines_and_files_do_not_matter() {
         TRIANGLE.trim_end().to_owned(),
         format!("# a comment that ends in a backslash \\\n{TRIANGLE}"),
         TRIANGLE.replace("f 1 2 3", "f 1 \\\n  2 3   # a comment"),
+        TRIANGLE.replace("f 1 2 3", "\\\n  f 1 2 3"),
         TRIANGLE.replace("v 1 0 0", "v\t+1e0   .0  0. "),
     ] {
         let scene = obj(&text).load("mesh.obj");
@@ -118,7 +119,7 @@ fn unknown_keywords_are_one_warning() {
 
 #[test]
 fn bytes_that_are_not_utf8_do_no_harm() {
-    let mut text = b"# caf\xe9\nmtllib mesh.mtl\nusemtl caf\xe9\n".to_vec();
+    let mut text = b"# caf\xe9\n\\\n \xe9\nmtllib mesh.mtl\nusemtl caf\xe9\n".to_vec();
     text.extend(TRIANGLE.as_bytes());
     let folder = obj(text).with("mesh.mtl", b"newmtl caf\xe9\nKd 0.1 0.2 0.3\n");
     assert_eq!(first_material(&folder.load("mesh.obj")).lambert, Vec3::new(0.1, 0.2, 0.3));

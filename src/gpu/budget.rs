@@ -1,0 +1,118 @@
+//! Whether a scene fits into the memory of a device, before anything is uploaded.
+
+use super::Device;
+use super::layout;
+use super::model::KernelModel;
+use crate::memory::{available, gib};
+use crate::scene::Scene;
+use crate::{Error, Result};
+
+/// Bytes of the compute BVH's nodes for each triangle: 8.0 to 11.2 were measured, on meshes of 38 to 2 880 000 triangles.
+const BVH_NODES: u64 = 12;
+/// Bytes of a bottom-level acceleration structure and its scratch memory for each triangle, roughly: drivers differ.
+const ACCELERATION_STRUCTURE: u64 = 120;
+
+/// What a scene takes, roughly.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Budget {
+    /// Triangles, normals, texture coordinates, instances.
+    geometry: u64,
+    /// Nodes, or acceleration structures.
+    acceleration: u64,
+    textures: u64,
+    environment: u64,
+}
+
+impl Budget {
+    /// The buffers of a scene for a kernel of this model.
+    pub(super) fn of(scene: &Scene, ray_query: bool, model: &KernelModel) -> Self {
+        let features = &model.features;
+        let triangles: u64 = scene.meshes.iter().map(|mesh| mesh.triangles.len() as u64).sum();
+        let textured = features.textures || features.holes;
+        let triangle = 48 + if features.vertex_normals { 48 } else { 0 } + if textured { 32 } else { 0 };
+        let objects = scene.objects.len() as u64 * size_of::<layout::Object>() as u64;
+        let texels: u64 = scene.textures.iter().map(|texture| texture.texels.len() as u64).sum();
+        let image = scene.environment.as_ref().and_then(|environment| environment.image.as_ref());
+        Budget {
+            geometry: triangles * triangle + objects,
+            acceleration: triangles * if ray_query { ACCELERATION_STRUCTURE } else { BVH_NODES },
+            textures: if textured { 8 * texels } else { 0 },
+            // A texel with its density, and its slot of the alias table.
+            environment: 24 * image.map_or(0, |image| image.texels.len() as u64),
+        }
+    }
+
+    fn total(&self) -> u64 {
+        self.geometry + self.acceleration + self.textures + self.environment
+    }
+
+    /// Refuses what the device's largest heap cannot hold, or this machine's memory: there the buffers are made, and a software
+    /// device keeps them there too.
+    pub(super) fn check(&self, device: &Device) -> Result<()> {
+        let heap = (device.memory, "the largest heap of its memory");
+        self.fits(self.total(), &device.name, heap)?;
+        let Some(free) = available() else { return Ok(()) };
+        let copies = if device.software { 2 } else { 1 };
+        self.fits(copies * self.total(), "this machine", (free, "what is free now"))
+    }
+
+    fn fits(&self, needed: u64, device: &str, (limit, what): (u64, &str)) -> Result<()> {
+        if needed <= limit {
+            return Ok(());
+        }
+        let Budget { geometry, acceleration, textures, environment } = *self;
+        let largest = (geometry + acceleration).max(textures).max(environment);
+        let reduce = match largest {
+            _ if largest == textures => "make the textures smaller",
+            _ if largest == environment => "make the environment's image smaller",
+            _ => "use fewer triangles, or instances of one mesh",
+        };
+        Err(Error::Limit {
+            what: "the scene".into(),
+            needed: format!(
+                "about {} of memory (geometry {}, acceleration structures {}, textures {}, environment {})",
+                gib(needed),
+                gib(geometry),
+                gib(acceleration),
+                gib(textures),
+                gib(environment)
+            ),
+            device: device.into(),
+            limit: format!("{}, {what}", gib(limit)),
+            advice: format!("{reduce}, or take another device"),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Texture, build};
+    use glam::{Affine3A, Vec3};
+    use half::f16;
+
+    #[test]
+    fn what_does_not_fit_is_named_with_its_largest_part() {
+        let mut scene = build::empty(4, 4);
+        build::add(&mut scene, build::icosphere(3), build::matte(Vec3::ONE), Affine3A::IDENTITY);
+        let budget = Budget::of(&scene, false, &KernelModel::of(&scene));
+        assert_eq!((budget.geometry, budget.textures, budget.environment), (1280 * 48 + 112, 0, 0));
+        assert!(budget.fits(budget.total(), "a device", (budget.total(), "its heap")).is_ok());
+        let error = budget.fits(budget.total(), "a device", (budget.total() - 1, "its heap")).unwrap_err().to_string();
+        assert!(
+            ["a device allows 0.1 MiB, its heap", "fewer triangles"].iter().all(|part| error.contains(part)),
+            "{error}"
+        );
+
+        let texels = vec![[f16::ONE; 4]; 1 << 16];
+        scene.textures.push(Texture { name: String::new(), width: 256, height: 256, texels, clamp: false });
+        scene.materials[0].maps.lambert = Some(0);
+        let textured = Budget::of(&scene, true, &KernelModel::of(&scene));
+        assert_eq!((textured.geometry, textured.textures), (1280 * 80 + 112, 8 << 16));
+        let error = textured.fits(9 << 30, "this machine", (8 << 30, "what is free now")).unwrap_err().to_string();
+        assert!(
+            ["9.0 GiB", "8.0 GiB, what is free", "textures smaller"].iter().all(|part| error.contains(part)),
+            "{error}"
+        );
+    }
+}
