@@ -59,6 +59,12 @@ impl Lane {
         self.work = None;
     }
 
+    /// Lets a tracer that looked at something else meanwhile look at what the film shows.
+    pub fn look(&self, tracer: &mut dyn SceneTracer) -> Result<()> {
+        let Some(Work { sight, film, .. }) = &self.work else { return Ok(()) };
+        tracer.look(&sight.sensor, &FilmSettings { width: film.width, height: film.height, ..sight.film })
+    }
+
     /// Prepares for `sight`: at a resolution at which the first pass is quick, which is then finer and finer unless the camera is `moving`. A quick pass
     /// that has begun is ended first, or a camera that never rests would never show anything. True if there is a new film.
     pub fn aim(&mut self, tracer: &mut dyn SceneTracer, sight: &Sight, moving: bool, spp: u32) -> Result<bool> {

@@ -157,13 +157,6 @@ struct Tracing {
     name: String,
 }
 
-/// The tracer of what the camera sees first.
-struct Surfaces {
-    tracer: FirstHits,
-    lane: Lane,
-    kind: FirstHit,
-}
-
 /// Traces what a window wants, on a thread of its own.
 pub struct Worker {
     scene: Scene,
@@ -174,7 +167,11 @@ pub struct Worker {
     estimators: Vec<(&'static str, Integrator)>,
     estimator: usize,
     picture: Option<Tracing>,
-    surfaces: Option<Surfaces>,
+    /// What the same tracer has done for a property of the first surfaces, and which.
+    surfaces: Lane,
+    kind: Option<FirstHit>,
+    /// Which of the two the tracer looks for.
+    looks: Option<bool>,
     link: Arc<Link>,
     tell: Box<dyn Fn(News) + Send>,
 }
@@ -184,7 +181,20 @@ impl Worker {
         let Options { mut scene, request, spp } = options;
         let stem = scene.path.file_stem().unwrap_or("scene".as_ref()).to_string_lossy().into_owned();
         let estimators = estimators(&mut scene);
-        Worker { scene, spp, stem, request, estimators, estimator: 0, picture: None, surfaces: None, link, tell }
+        Worker {
+            scene,
+            spp,
+            stem,
+            request,
+            estimators,
+            estimator: 0,
+            picture: None,
+            surfaces: Lane::new(),
+            kind: None,
+            looks: None,
+            link,
+            tell,
+        }
     }
 
     /// Works until it is told to quit.
@@ -206,13 +216,19 @@ impl Worker {
                 }
             }
             self.open(&wanted)?;
-            let (tracer, lane, spp) = match (&mut self.picture, &mut self.surfaces, wanted.shown) {
-                (_, Some(surfaces), Shown::First(_)) => {
-                    (&mut surfaces.tracer as &mut dyn SceneTracer, &mut surfaces.lane, FIRST_HIT_SAMPLES)
+            let Some(Tracing { tracer, lane, .. }) = &mut self.picture else { return Ok(()) };
+            let mut hits;
+            let (tracer, lane, spp): (&mut dyn SceneTracer, _, _) = match wanted.shown {
+                Shown::First(kind) => {
+                    hits = FirstHits { tracer: tracer.as_mut(), kind };
+                    (&mut hits, &mut self.surfaces, FIRST_HIT_SAMPLES)
                 }
-                (Some(picture), ..) => (picture.tracer.as_mut(), &mut picture.lane, self.spp),
-                _ => unreachable!("open() has seen to it"),
+                Shown::Picture | Shown::Error => (tracer.as_mut(), lane, self.spp),
             };
+            let surfaces = matches!(wanted.shown, Shown::First(_));
+            if self.looks.replace(surfaces) != Some(surfaces) {
+                lane.look(tracer)?;
+            }
             let aimed = lane.aim(tracer, &wanted.sight, wanted.moving, spp)?;
             // A pause does not keep a picture from being begun.
             let traced = !(wanted.paused && lane.film().is_some()) && lane.trace(tracer)?;
@@ -232,20 +248,15 @@ impl Worker {
 
     /// Sees to the tracer that is wanted.
     fn open(&mut self, wanted: &Wanted) -> Result<()> {
-        if let Shown::First(kind) = wanted.shown {
-            let surfaces = self.surfaces.get_or_insert_with(|| {
-                (self.tell)(News::Said("preparing".into()));
-                Surfaces { tracer: FirstHits::new(&self.scene, kind), lane: Lane::new(), kind }
-            });
-            if surfaces.kind != kind {
-                surfaces.kind = kind;
-                surfaces.tracer.show(kind);
-                surfaces.lane.restart();
-            }
-        } else if self.picture.is_none() {
+        if self.picture.is_none() {
             (self.tell)(News::Said("preparing".into()));
             let request = self.request.clone();
             self.picture = Some(self.tracing(wanted, &request)?);
+        }
+        if let Shown::First(kind) = wanted.shown
+            && self.kind.replace(kind) != Some(kind)
+        {
+            self.surfaces.restart();
         }
         Ok(())
     }
@@ -269,6 +280,7 @@ impl Worker {
             match self.tracing(wanted, &Request { backend: Some(backend), device }) {
                 Ok(picture) => {
                     self.picture = Some(picture);
+                    self.surfaces.restart();
                     return;
                 }
                 Err(error) => (self.tell)(News::Said(format!("no {backend}: {error}"))),
@@ -290,7 +302,7 @@ impl Worker {
     /// The lane that is shown.
     fn lane(&mut self, shown: Shown) -> Option<&mut Lane> {
         match shown {
-            Shown::First(_) => self.surfaces.as_mut().map(|surfaces| &mut surfaces.lane),
+            Shown::First(_) => Some(&mut self.surfaces),
             Shown::Picture | Shown::Error => self.picture.as_mut().map(|picture| &mut picture.lane),
         }
     }
@@ -299,7 +311,8 @@ impl Worker {
         let (estimator, _) = self.estimators[self.estimator];
         let tracer = match (&self.picture, wanted.shown) {
             (Some(picture), Shown::Picture | Shown::Error) => format!("{}, {estimator}", picture.name),
-            _ => "the reference's first hits".into(),
+            (Some(picture), Shown::First(_)) => picture.name.clone(),
+            (None, _) => return,
         };
         let Some(lane) = self.lane(wanted.shown) else { return };
         let (samples, mrays, error) = lane.figures();
