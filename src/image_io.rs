@@ -90,7 +90,7 @@ pub fn check_writable(path: &Path) -> Result<()> {
 /// [`Error::Usage`] for an unknown ending, [`Error::Write`] if the system refuses; then nothing has changed at `path`.
 pub fn save(path: &Path, film: &Film, exposure: f32) -> Result<()> {
     match Format::of(path)? {
-        Format::Exr => save_exr(path, film, &[], vec![]),
+        Format::Exr => save_exr(path, film, vec![], vec![]),
         Format::Png | Format::Hdr => save_linear(path, film.width, film.height, &film.to_linear(), exposure),
     }
 }
@@ -109,7 +109,8 @@ pub fn save_linear(path: &Path, width: u32, height: u32, linear: &[f32], exposur
             ExtendedColorType::Rgb8,
         ),
         Format::Exr => {
-            let exr = Exr { width, height, rgb: bytemuck::cast_slice(linear), error: None, more: &[], attributes: &[] };
+            let exr =
+                Exr { width, height, rgb: bytemuck::cast_slice(linear), error: None, more: vec![], attributes: &[] };
             Ok(out.write_all(&exr.encode().map_err(std::io::Error::other)?)?)
         }
         Format::Hdr => image::codecs::hdr::HdrEncoder::new(out).write_image(
@@ -128,7 +129,7 @@ pub fn save_linear(path: &Path, width: u32, height: u32, linear: &[f32], exposur
 pub fn save_with_aovs(path: &Path, film: &Film, aovs: &Aovs) -> Result<()> {
     let mut more = aovs.channels();
     more.push(("samples".into(), Values::Integer(film.samples.clone())));
-    save_exr(path, film, &more, vec![])
+    save_exr(path, film, more, vec![])
 }
 
 /// Writes a film as an EXR picture with further channels and attributes.
@@ -138,7 +139,7 @@ pub fn save_with_aovs(path: &Path, film: &Film, aovs: &Aovs) -> Result<()> {
 pub(crate) fn save_exr(
     path: &Path,
     film: &Film,
-    more: &[(String, Values)],
+    more: Vec<(String, Values)>,
     about: Vec<(&str, Attribute<'_>)>,
 ) -> Result<()> {
     let bytes = encode_exr(film, &film.to_linear(), more, about).map_err(|e| Error::write(path, e))?;
@@ -149,7 +150,7 @@ pub(crate) fn save_exr(
 fn encode_exr<'a>(
     film: &Film,
     linear: &[f32],
-    more: &[(String, Values)],
+    more: Vec<(String, Values)>,
     mut attributes: Vec<(&'a str, Attribute<'a>)>,
 ) -> std::io::Result<Vec<u8>> {
     let errors = film.error_map();
@@ -210,6 +211,17 @@ fn before_truncation(linear: &[f32]) -> Vec<f32> {
         [more(&pixel[0]), more(&pixel[1]), more(&pixel[2])]
     };
     linear.chunks_exact(3).flat_map(more).collect()
+}
+
+/// Whether two names lead to one file, or would once it is written.
+pub fn same_file(a: &Path, b: &Path) -> bool {
+    let place = |path: &Path| {
+        // A link leads elsewhere only if there is something.
+        std::fs::canonicalize(path)
+            .ok()
+            .or_else(|| Some(std::fs::canonicalize(folder_of(path)).ok()?.join(path.file_name()?)))
+    };
+    a == b || place(a).is_some_and(|a| Some(a) == place(b))
 }
 
 /// The folder in which `path` lies.

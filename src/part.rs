@@ -7,7 +7,7 @@
 
 use crate::film::{Film, SampleId};
 use crate::image_io::{self, Attribute, Values};
-use crate::render::{DROPPED_NAMED, LEAST_FOR_NOISE, Rendered};
+use crate::render::{DROPPED_NAMED, LEAST_FOR_NOISE, Rendered, is_a_pass};
 use crate::sampling::PARTS;
 use crate::scene::Scene;
 use crate::{Error, Result};
@@ -21,6 +21,9 @@ use std::path::{Path, PathBuf};
 /// Names of the texts in the head.
 const PROVENANCE: &str = "luminaire.provenance";
 const COUNTS: &str = "luminaire.counts";
+
+/// The picture, its error, the number of samples, the sums in halves, what is left out.
+const MOST_CHANNELS: usize = 3 + 3 + 1 + 6 * PARTS as usize + PARTS as usize;
 
 const HALVES: [&str; 2] = ["high", "low"];
 const CHANNELS: [&str; 3] = ["R", "G", "B"];
@@ -67,7 +70,13 @@ impl Provenance {
                 "luminaires",
                 digest(|hash| {
                     write(hash, &scene.luminaires);
-                    write(hash, &scene.environment);
+                    if let Some(environment) = &scene.environment {
+                        write(hash, &(environment.radiance, environment.rotation));
+                        if let Some(image) = &environment.image {
+                            write(hash, &(image.width, image.height));
+                            image.texels.iter().for_each(|texel| floats(hash, &texel.to_array()));
+                        }
+                    }
                 }),
             ),
             ("camera", digest(|hash| write(hash, &scene.sensor))),
@@ -119,13 +128,16 @@ fn write(hash: &mut Sha256, value: &impl Debug) {
     hash.update(format!("{value:?}\n"));
 }
 
+fn floats(hash: &mut Sha256, values: &[f32]) {
+    values.iter().for_each(|value| hash.update(value.to_le_bytes()));
+}
+
 fn geometry(scene: &Scene) -> String {
     digest(|hash| {
         for mesh in &scene.meshes {
             write(hash, &(mesh.positions.len(), mesh.normals.len(), mesh.uvs.len(), mesh.triangles.len()));
-            let mut floats = |v: &[f32]| v.iter().for_each(|v| hash.update(v.to_le_bytes()));
-            mesh.positions.iter().chain(&mesh.normals).for_each(|v| floats(&v.to_array()));
-            mesh.uvs.iter().for_each(|v| floats(&v.to_array()));
+            mesh.positions.iter().chain(&mesh.normals).for_each(|v| floats(hash, &v.to_array()));
+            mesh.uvs.iter().for_each(|v| floats(hash, &v.to_array()));
             for triangle in &mesh.triangles {
                 triangle.vertices.iter().chain([&triangle.material]).for_each(|i| hash.update(i.to_le_bytes()));
             }
@@ -187,7 +199,7 @@ pub fn save(path: &Path, rendered: &Rendered, provenance: &Provenance) -> Result
     let json = |value: serde_json::Result<String>| value.map_err(|e| Error::write(path, e));
     let (provenance, counts) = (json(serde_json::to_string(provenance))?, json(serde_json::to_string(&counts))?);
     let about = vec![(PROVENANCE, Attribute::Text(&provenance)), (COUNTS, Attribute::Text(&counts))];
-    image_io::save_exr(path, film, &channels, about)
+    image_io::save_exr(path, film, channels, about)
 }
 
 /// Reads the head of a file.
@@ -219,11 +231,8 @@ pub fn read(path: &Path) -> Result<(Rendered, Provenance)> {
     let (provenance, counts) = about(path)?;
     let damaged = |what: &str| Error::read(path, format!("it is damaged: {what}"));
     Film::check_size(provenance.width, provenance.height)?;
-    let mut channels = image_io::read_channels(path).map_err(|e| Error::read(path, e))?;
-    let size = (channels.width, channels.height);
-    if size != (provenance.width, provenance.height) {
-        return Err(damaged("its size is not the one that it says"));
-    }
+    let size = (provenance.width, provenance.height);
+    let mut channels = image_io::read_channels(path, MOST_CHANNELS, size).map_err(|e| Error::read(path, e))?;
     let mut rendered = Rendered::nothing(size, counts.first_sample)?;
     let film = &mut rendered.film;
     let mut take = |name: &str| channels.take_integers(name);
@@ -235,7 +244,8 @@ pub fn read(path: &Path) -> Result<(Rendered, Provenance)> {
     let in_order = film.samples[..unfinished].iter().all(|n| *n == most)
         && film.samples[unfinished..].iter().all(|n| *n == least)
         && counts.end_sample == (least == most).then_some(most.wrapping_add(counts.first_sample));
-    if !in_order || counts.first_sample.checked_add(most).is_none() {
+    let end = counts.first_sample.checked_add(most);
+    if !in_order || end.is_none_or(|end| !is_a_pass(counts.first_sample + least..end)) {
         return Err(damaged("its numbers of samples are impossible"));
     }
     for part in 0..PARTS as usize {
@@ -267,7 +277,8 @@ pub fn read(path: &Path) -> Result<(Rendered, Provenance)> {
     rendered.dropped = counts.dropped;
     rendered.dropped_samples = counts.dropped_samples.iter().take(DROPPED_NAMED).map(id).collect();
     rendered.device_seconds = counts.device_seconds;
-    rendered.noise_aim = counts.noise_aim.max(LEAST_FOR_NOISE);
+    // Where the limit of the noise is looked at next is at most twice as far as there are samples.
+    rendered.noise_aim = counts.noise_aim.clamp(LEAST_FOR_NOISE, most.saturating_mul(2).max(LEAST_FOR_NOISE));
     let progress = &mut rendered.progress;
     progress.samples = rendered.film.samples.iter().map(|n| u64::from(*n)).sum();
     (progress.rays, progress.shadow_rays, progress.seconds) = (counts.rays, counts.shadow_rays, counts.seconds);

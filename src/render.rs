@@ -11,7 +11,7 @@ mod schedule;
 use crate::film::{AovSum, Aovs, Batch, ErrorEstimate, Film, PixelSum, SampleId, Tile};
 use crate::sampling::PARTS;
 use crate::{Error, Result};
-pub(crate) use schedule::{FIRST_BUDGET, Schedule, next_budget};
+pub(crate) use schedule::{FIRST_BUDGET, Schedule, is_a_pass, next_budget};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;

@@ -279,6 +279,7 @@ fn parts_in_any_order_are_the_whole() {
     fails(merge(&["0..16.exr", "0..16.exr"], "c.exr"), 2, &["samples 0..16 are in both 0..16.exr"]);
     fails(merge(&["0..16.exr", "whole.exr"], "c.exr"), 1, &["whole.exr", "not a part of a render"]);
     fails(merge(&["0..16.exr", "16..21.exr"], "16..21.exr"), 2, &["one of the parts"]);
+    fails(merge(&["0..16.exr", "16..21.exr"], "./16..21.exr"), 2, &["one of the parts"]);
     fails(merge(&["0..16.exr", "none.exr"], "c.exr"), 1, &["none.exr"]);
     assert_eq!(folder.names(), before);
     done(folder.render("--samples 16..48 --seed 5 -o other.exr --quiet"));
@@ -310,6 +311,8 @@ fn parts_are_asked_for_with_sense() {
     fails(folder.render("--spp 4 --resume"), 2, &["--checkpoint"]);
     fails(folder.render("--spp 4 --checkpoint c.png"), 2, &["c.png", ".exr"]);
     fails(folder.render("--spp 4 --checkpoint a.exr -o a.exr"), 2, &["a.exr"]);
+    // The same file by another name.
+    fails(folder.render("--spp 4 --checkpoint ./a.exr -o a.exr"), 2, &["a.exr", "the picture itself"]);
     fails(folder.render("--spp 4 --checkpoint none/c.exr"), 1, &["none", "does not exist"]);
     assert!(folder.names().is_empty());
 }

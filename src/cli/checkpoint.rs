@@ -6,7 +6,7 @@ use luminaire::render::Rendered;
 use luminaire::scene::Scene;
 use luminaire::{Error, Result, image_io};
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// Where a render is saved while it runs.
@@ -51,6 +51,14 @@ impl<'a> Checkpoint<'a> {
     }
 }
 
+/// Everything else that is written.
+fn others_outputs(options: &RenderOptions) -> Vec<&Path> {
+    let paths = options.output.iter().map(PathBuf::as_path);
+    #[cfg(feature = "denoise")]
+    let paths = paths.chain(options.denoised.as_deref());
+    paths.collect()
+}
+
 /// Checks the options that concern parts and checkpoints, before anything is loaded.
 pub fn check(options: &RenderOptions) -> Result<()> {
     let is_exr = |path: &Path| matches!(image_io::Format::of(path), Ok(image_io::Format::Exr));
@@ -66,10 +74,10 @@ pub fn check(options: &RenderOptions) -> Result<()> {
     if !is_exr(path) {
         return Err(Error::Usage(format!("--checkpoint {}: the name must end in .exr", path.display())));
     }
-    if options.output.contains(path) {
+    if others_outputs(options).iter().any(|output| image_io::same_file(output, path)) {
         return Err(Error::Usage(format!("--checkpoint {}: the picture itself is written there", path.display())));
     }
-    if path.exists() && !options.resume {
+    if exists(path)? && !options.resume {
         return Err(Error::Usage(format!(
             "--checkpoint {}: there is a file already: go on from it with --resume, or remove it to start anew",
             path.display()
@@ -85,8 +93,8 @@ pub fn begin(options: &RenderOptions, scene: &Scene, say: &dyn Fn(&str)) -> Resu
     let Some(path) = options.checkpoint.as_deref().filter(|_| options.resume) else {
         return Rendered::nothing(size, first);
     };
-    image_io::remove_left_over(path);
-    if !path.exists() {
+    others_outputs(options).into_iter().chain([path]).for_each(image_io::remove_left_over);
+    if !exists(path)? {
         say(&format!("{}: no checkpoint yet; starting anew", path.display()));
         return Rendered::nothing(size, first);
     }
@@ -108,6 +116,11 @@ pub fn begin(options: &RenderOptions, scene: &Scene, say: &dyn Fn(&str)) -> Resu
         rendered.progress.seconds
     ));
     Ok(rendered)
+}
+
+/// Whether there is a file. Not to know is an error: a file that cannot be seen for a moment must not be overwritten.
+fn exists(path: &Path) -> Result<bool> {
+    path.try_exists().map_err(|e| Error::read(path, e))
 }
 
 /// Reads `A..B`.

@@ -11,7 +11,7 @@ pub fn run(options: &MergeOptions) -> Result<ExitCode> {
         if options.output[..i].contains(path) {
             return Err(Error::Usage(format!("-o {} is given twice", path.display())));
         }
-        if options.parts.contains(path) {
+        if options.parts.iter().any(|part| image_io::same_file(part, path)) {
             return Err(Error::Usage(format!("-o {}: that is one of the parts", path.display())));
         }
         image_io::check_output(path)?;

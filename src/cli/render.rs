@@ -112,9 +112,13 @@ fn trace(
     {
         say(&format!("the checkpoint already held more samples than were asked for: {least} a pixel"));
     }
-    // A device that has failed would only fail again.
+    // First of all: whatever fails after it, nothing is lost.
+    WRITING.store(true, Ordering::SeqCst);
+    let saved = checkpoint.filter(|_| rendered.progress.samples > 0).map(|checkpoint| checkpoint.save(&rendered));
+    WRITING.store(false, Ordering::SeqCst);
+    // A device that has failed would only fail again, and who interrupts does not want to wait.
     let mut layers = None;
-    if wants_aovs(options) && !matches!(rendered.end, End::Failed(_)) {
+    if wants_aovs(options) && !matches!(rendered.end, End::Failed(_) | End::Stopped) {
         let size = (rendered.film.width, rendered.film.height);
         match aovs(&mut tracer, size, rendered.film.most_samples()) {
             Ok(found) => layers = Some(found),
@@ -123,7 +127,7 @@ fn trace(
     }
     seconds.render = rendered.progress.seconds;
     seconds.device = rendered.device_seconds;
-    finish(options, scene, &opened, rendered, layers, checkpoint.as_ref(), seconds, outputs, say)
+    finish(options, scene, &opened, rendered, layers, saved, seconds, outputs, say)
 }
 
 /// A tracer whose device is lost after some batches: with LUMINAIRE_LOSE_DEVICE_AFTER, so that scripts can try what happens then.
@@ -182,7 +186,7 @@ fn finish(
     opened: &Renderer,
     rendered: Rendered,
     aovs: Option<Aovs>,
-    checkpoint: Option<&Checkpoint<'_>>,
+    saved: Option<Result<()>>,
     mut seconds: Seconds,
     outputs: &[PathBuf],
     say: &dyn Fn(&str),
@@ -198,12 +202,10 @@ fn finish(
         say(&format!("warning: {} samples that were not finite, or lost, are left out{replay}", rendered.dropped));
     }
     WRITING.store(true, Ordering::SeqCst);
-    // First of all: whatever fails after it, nothing is lost.
-    let saved = checkpoint.filter(|_| rendered.progress.samples > 0).map(|checkpoint| checkpoint.save(&rendered));
     let kept = matches!(saved, Some(Ok(())));
     let unfinished_part = options.samples.is_some() && !matches!(rendered.end, End::Samples);
     // Whoever finds a part may take it to be whole, so that one that is not stays in the checkpoint, if there is one.
-    let written = if rendered.progress.samples == 0 || unfinished_part && kept { &[] } else { outputs };
+    let written = if rendered.progress.samples == 0 || unfinished_part && saved.is_some() { &[] } else { outputs };
     let black = rendered.film.samples.iter().filter(|samples| **samples == 0).count();
     if black > 0 && !written.is_empty() {
         say(&format!("warning: {black} pixels have no sample and are black: the render ended during the first pass"));

@@ -16,7 +16,7 @@ use std::path::Path;
 const ERROR: &str = "error.";
 
 /// A picture to write.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Exr<'a> {
     /// Width in pixels.
     pub width: u32,
@@ -27,7 +27,7 @@ pub struct Exr<'a> {
     /// Standard error of every number of `rgb`, if it is known; written as the channels `error.R`, `error.G` and `error.B`.
     pub error: Option<&'a [[f32; 3]]>,
     /// Further channels, by name.
-    pub more: &'a [(String, Values)],
+    pub more: Vec<(String, Values)>,
     /// What else is known about the picture, by name.
     pub attributes: &'a [(&'a str, Attribute<'a>)],
 }
@@ -55,7 +55,7 @@ impl Exr<'_> {
     ///
     /// # Errors
     /// In the encoder's words, for example if there are no pixels, or not `width * height` of them.
-    pub fn encode(&self) -> Result<Vec<u8>, String> {
+    pub fn encode(self) -> Result<Vec<u8>, String> {
         let pixels = self.width as usize * self.height as usize;
         if self.rgb.len() != pixels || self.error.is_some_and(|error| error.len() != pixels) {
             return Err(format!("there are not {} x {} pixels", self.width, self.height));
@@ -70,13 +70,13 @@ impl Exr<'_> {
         channels.extend(self.error.into_iter().flat_map(|error| planes(ERROR, error)));
         for (name, values) in self.more {
             let samples = match values {
-                Values::Float(values) => FlatSamples::F32(values.clone()),
-                Values::Integer(values) => FlatSamples::U32(values.clone()),
+                Values::Float(values) => FlatSamples::F32(values),
+                Values::Integer(values) => FlatSamples::U32(values),
             };
             if samples.len() != pixels {
                 return Err(format!("there are not {} x {} numbers in the channel {name}", self.width, self.height));
             }
-            channels.push(AnyChannel::new(text(name), samples));
+            channels.push(AnyChannel::new(text(&name), samples));
         }
         let mut about = LayerAttributes { software_name: Some(text("luminaire")), ..LayerAttributes::default() };
         about.other = self.attributes.iter().map(|(name, value)| (text(name), value.stored())).collect();
@@ -191,8 +191,6 @@ pub(super) fn open(path: &Path) -> Result<Picture, String> {
 /// The numbers of a file with one part, by channel.
 #[derive(Debug)]
 pub(crate) struct Channels {
-    pub(crate) width: u32,
-    pub(crate) height: u32,
     values: BTreeMap<String, Values>,
 }
 
@@ -220,21 +218,27 @@ pub(crate) fn read_texts(path: &Path) -> Result<BTreeMap<String, String>, String
     Ok(texts.collect())
 }
 
-/// Reads every channel of a file with one part that this program has written.
+/// Reads every channel of a file with one part of at most so many, and of this size, that this program has written.
 ///
 /// # Errors
 /// In words that can follow the file's name.
-pub(crate) fn read_channels(path: &Path) -> Result<Channels, String> {
+pub(crate) fn read_channels(path: &Path, most_channels: usize, size: (u32, u32)) -> Result<Channels, String> {
     let meta = MetaData::read_from_file(path, false).map_err(in_words)?;
     let [header] = &meta.headers[..] else { return Err("it has several parts".into()) };
     let (width, height) = (header.layer_size.width() as u64, header.layer_size.height() as u64);
+    if (width, height) != (u64::from(size.0), u64::from(size.1)) {
+        return Err("it is damaged: its size is not the one that it says".into());
+    }
+    if width * height > MOST_PIXELS {
+        return Err(too_large(width, height));
+    }
+    if header.channels.list.len() > most_channels {
+        return Err("it is damaged: it has more channels than such a file".into());
+    }
     let bytes = width * height * header.channels.list.len() as u64 * 4;
     // Nothing deflates better than 1 : 1032, so that a small file never asks for much memory.
     if std::fs::metadata(path).map_err(|e| e.to_string())?.len() < bytes / 1032 {
         return Err("it is truncated: so few bytes cannot hold so many pixels".into());
-    }
-    if width * height > MOST_PIXELS {
-        return Err(too_large(width, height));
     }
     let image = read()
         .no_deep_data()
@@ -261,7 +265,7 @@ pub(crate) fn read_channels(path: &Path) -> Result<Channels, String> {
     if !values.values().all(whole) {
         return Err("a channel does not have a number for every pixel".into());
     }
-    Ok(Channels { width: width as u32, height: height as u32, values })
+    Ok(Channels { values })
 }
 
 /// Finds the picture: R, G and B, else Y, without a prefix; else the only ones with a prefix.
@@ -402,8 +406,8 @@ mod tests {
     fn what_is_written_is_read() {
         let error: Vec<_> = (0..6).map(|i| [0.5, i as f32, f32::MIN_POSITIVE]).collect();
         let attributes = [("samples", Attribute::Number(64.0)), ("scene", Attribute::Text("b\u{e9} \u{4e16}"))];
-        let exr = Exr { width: 3, height: 2, rgb: &rgb(), error: Some(&error), more: &[], attributes: &attributes };
-        let bytes = exr.encode().unwrap();
+        let exr = Exr { width: 3, height: 2, rgb: &rgb(), error: Some(&error), more: vec![], attributes: &attributes };
+        let bytes = exr.clone().encode().unwrap();
         let picture = opened(&bytes).unwrap();
         assert_eq!((picture.width, picture.height, picture.clamped), (3, 2, false));
         assert_eq!(bytemuck::cast_slice::<_, u32>(&picture.rgb), bytemuck::cast_slice::<_, u32>(&rgb()));
@@ -416,19 +420,19 @@ mod tests {
         assert_eq!(attribute("samples"), AttributeValue::F64(64.0));
         assert_eq!(attribute("scene"), AttributeValue::Text(Text::new_or_none("b\u{e9} ?").unwrap()));
 
-        let plain = Exr { error: None, attributes: &[], ..exr };
+        let plain = Exr { error: None, attributes: &[], ..exr.clone() };
         assert_eq!(opened(&plain.encode().unwrap()).unwrap().error, None);
-        assert!(Exr { width: 2, ..exr }.encode().is_err());
-        assert!(Exr { width: 0, height: 0, rgb: &[], error: None, more: &[], attributes: &[] }.encode().is_err());
+        assert!(Exr { width: 2, ..exr.clone() }.encode().is_err());
+        assert!(Exr { width: 0, height: 0, rgb: &[], error: None, more: vec![], attributes: &[] }.encode().is_err());
     }
 
     #[test]
     fn one_picture_has_one_file() {
         let names: Vec<String> = (0..20).map(|i| format!("number {i}")).collect();
         let attributes: Vec<_> = names.iter().map(|name| (&**name, Attribute::Number(1.0))).collect();
-        let exr = Exr { width: 3, height: 2, rgb: &rgb(), error: None, more: &[], attributes: &attributes };
-        let bytes = exr.encode().unwrap();
-        assert!((0..10).all(|_| exr.encode().unwrap() == bytes));
+        let exr = Exr { width: 3, height: 2, rgb: &rgb(), error: None, more: vec![], attributes: &attributes };
+        let bytes = exr.clone().encode().unwrap();
+        assert!((0..10).all(|_| exr.clone().encode().unwrap() == bytes));
     }
 
     #[test]
@@ -486,8 +490,8 @@ mod tests {
     /// Whatever is cut off or changed, there is an answer, soon, and no panic.
     #[test]
     fn damaged_files() {
-        let exr = Exr { width: 3, height: 2, rgb: &rgb(), error: Some(&rgb()), more: &[], attributes: &[] };
-        let bytes = exr.encode().unwrap();
+        let exr = Exr { width: 3, height: 2, rgb: &rgb(), error: Some(&rgb()), more: vec![], attributes: &[] };
+        let bytes = exr.clone().encode().unwrap();
         for length in 0..bytes.len() {
             assert!(opened(&bytes[..length]).is_err(), "{length} of {} bytes", bytes.len());
         }

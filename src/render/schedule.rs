@@ -37,6 +37,18 @@ fn groups_end(start: u32) -> u32 {
     (start / stride + 1).saturating_mul(stride)
 }
 
+/// Whether a pass over the film may take these samples; an empty range, between two passes, counts as one.
+pub(crate) fn is_a_pass(samples: std::ops::Range<u32>) -> bool {
+    let length = u64::from(samples.end - samples.start);
+    // Groups of one pass are of equal length.
+    let equal = match samples.start / PARTS {
+        0 => 2 * PARTS,
+        1..LONGEST => groups_end(samples.start),
+        _ => u32::MAX,
+    };
+    length == 0 || samples.end <= equal && length <= MAX_PASS
+}
+
 /// Cuts the work into batches: pass after pass over the whole film, so that it fills evenly.
 #[derive(Debug)]
 pub(crate) struct Schedule {
@@ -184,6 +196,19 @@ mod tests {
         schedule.pass.end = u32::MAX - 7;
         assert_eq!(schedule.next(1 << 40, 1 << 30).map(|b| b.samples), Some(u32::MAX - 7..u32::MAX));
         assert_eq!(schedule.next(1 << 40, 1 << 30), None);
+    }
+
+    #[test]
+    fn every_pass_is_a_pass_and_nothing_else() {
+        for (budget, end) in [(16, 100), (700, 1000), (1 << 40, 2000)] {
+            let mut schedule = fresh((3, 2), end);
+            while let Some(batch) = schedule.next(budget, 1 << 30) {
+                assert!(is_a_pass(batch.samples.clone()), "{:?}", batch.samples);
+            }
+        }
+        for wrong in [0..9, 3..9, 4..9, 8..17, 0..100_000_000, 16..100_000_000] {
+            assert!(!is_a_pass(wrong.clone()), "{wrong:?}");
+        }
     }
 
     #[test]
