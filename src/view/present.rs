@@ -35,6 +35,7 @@ pub struct Presenter {
     pub(super) device: ash::Device,
     pub(super) swapchains: khr::swapchain::Device,
     queue: vk::Queue,
+    family: u32,
     pool: vk::CommandPool,
     commands: vk::CommandBuffer,
     /// Signalled when the last copy is done.
@@ -141,6 +142,7 @@ impl Presenter {
             device,
             swapchains,
             queue,
+            family,
             pool: vk::CommandPool::null(),
             commands: vk::CommandBuffer::null(),
             copied: vk::Fence::null(),
@@ -243,7 +245,18 @@ impl Presenter {
         unsafe { self.surface.calls.destroy_surface(self.surface.raw, None) };
         self.surface.raw = vk::SurfaceKHR::null();
         self.surface = Surface::new(&instance, &window)?;
-        Ok(())
+        // Vulkan wants this to be asked of every surface, and another screen may belong to another device.
+        // SAFETY: device and surface are alive and of one instance, and the device has the family.
+        let presents = unsafe {
+            self.surface.calls.get_physical_device_surface_support(self.physical, self.family, self.surface.raw)
+        };
+        match presents {
+            Ok(true) => Ok(()),
+            Ok(false) => {
+                Err(Error::NoDevice(format!("{} cannot present to this window any more: open it again", self.name)))
+            }
+            Err(e) => Err(self.error("vkGetPhysicalDeviceSurfaceSupportKHR", e)),
+        }
     }
 
     /// A swapchain of the window's size; none while it has no size.

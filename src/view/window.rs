@@ -154,7 +154,10 @@ impl App {
         // The event loop is gone only when nobody wants to know any more.
         let tell = Box::new(move |news| drop(proxy.send_event(news)));
         let worker = std::thread::Builder::new().name("worker".into()).spawn(move || {
-            let result = Worker::new(options, link, tell).run();
+            // A window whose worker is gone would look alive. What the panic said is on stderr.
+            let run = std::panic::AssertUnwindSafe(|| Worker::new(options, link, tell).run());
+            let result = std::panic::catch_unwind(run)
+                .unwrap_or_else(|_| Err(Error::NoDevice("the renderer stopped: this is a bug of luminaire".into())));
             let _ = ended.send_event(News::Ended(result));
         });
         self.worker = Some(worker.map_err(|e| Error::NoDevice(format!("no thread can be started: {e}")))?);
@@ -165,7 +168,7 @@ impl App {
     fn close(&mut self) {
         self.link.order(Order::Quit);
         if let Some(worker) = self.worker.take() {
-            // It tells what went wrong by `News::Ended`; a panic has been told already.
+            // It tells what went wrong by `News::Ended`.
             let _ = worker.join();
         }
         self.presenter = None;
