@@ -205,14 +205,16 @@ impl Faces {
             // Newell's method: the area vector of any polygon.
             let edge = |corner: usize| (point(corner) - point(0)).cross(point(corner + 1) - point(0));
             let normal = (1..corners.len() - 1).map(edge).sum::<DVec3>().normalize_or_zero();
-            for corner in 0..corners.len() {
+            let count = corners.len();
+            let steps = steps_to_others(count, |a, b| point(a) == point(b));
+            for corner in 0..count {
                 // Adding 0 makes -0 the same as 0.
                 let bits = (at(corner) + Vec3::ZERO).to_array().map(f32::to_bits);
                 // Some corners of a face may lie on each other, at the pole of a sphere for example.
                 let here = point(corner);
-                let count = corners.len();
-                let before = (1..count).map(|k| point(corner + count - k) - here).find(|edge| *edge != DVec3::ZERO);
-                let after = (1..count).map(|k| point(corner + k) - here).find(|edge| *edge != DVec3::ZERO);
+                let [back, forth] = steps.get(corner).copied().unwrap_or([1; 2]);
+                let edge = |other: usize| Some(point(other) - here).filter(|edge| *edge != DVec3::ZERO);
+                let (before, after) = (edge(corner + count - back), edge(corner + forth));
                 let angle = before.zip(after).map_or(0.0, |(a, b)| a.cross(b).length().atan2(a.dot(b)));
                 let incident =
                     Incident { corner: first + corner, smoothing_group: face.smoothing_group, normal, angle };
@@ -227,5 +229,40 @@ impl Faces {
             first += corners.len();
         }
         points.into_iter()
+    }
+}
+/// For each of the corners of a face, how many steps back and forth it is to the nearest one that lies elsewhere, at most `count`; empty if that is one step
+/// for all. In time proportional to the corners, however many lie on each other.
+fn steps_to_others(count: usize, same: impl Fn(usize, usize) -> bool) -> Vec<[usize; 2]> {
+    if !(0..count).any(|corner| same(corner, corner + 1)) {
+        return Vec::new();
+    }
+    let mut steps = vec![[count; 2]; count];
+    // Twice around, so that a run over the end is counted whole.
+    for i in 0..2 * count {
+        let (corner, before) = (i % count, (i + count - 1) % count);
+        steps[corner][0] = if same(before, before + 1) { (steps[before][0] + 1).min(count) } else { 1 };
+        let corner = count - 1 - corner;
+        let after = (corner + 1) % count;
+        steps[corner][1] = if same(corner, corner + 1) { (steps[after][1] + 1).min(count) } else { 1 };
+    }
+    steps
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn corners_on_each_other_are_stepped_over() {
+        let steps = |places: &[u32]| {
+            let count = places.len();
+            steps_to_others(count, |a, b| places[a % count] == places[b % count])
+        };
+        assert!(steps(&[1, 2, 3]).is_empty());
+        assert_eq!(steps(&[1, 1, 2]), [[1, 2], [2, 1], [1, 1]]);
+        // The run goes over the end.
+        assert_eq!(steps(&[7, 1, 2, 7]), [[2, 1], [1, 1], [1, 1], [1, 2]]);
+        assert_eq!(steps(&[4; 3]), [[3; 2]; 3]);
     }
 }
