@@ -273,6 +273,20 @@ def number(x, digits=4):
     return "0" if text in ("-0", "") else text
 
 
+def unfolded(face, points):
+    """A quadrangle, or its two triangles where two of its sides cross: such a polygon has no inside that can be told."""
+    if len(face) != 4:
+        return [face]
+    a, b, c, d = (points[i] for i in face)
+    minus = lambda p, q: [x - y for x, y in zip(p, q)]
+    cross = lambda p, q: [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]]
+    dot = lambda p, q: sum(x * y for x, y in zip(p, q))
+    normal = cross(minus(c, a), minus(d, b))
+    turns = lambda p, q, r: dot(cross(minus(q, p), minus(r, p)), normal) >= -1e-9 * dot(normal, normal)
+    plain = turns(a, b, c) and turns(a, c, d) or turns(b, c, d) and turns(b, d, a)
+    return [face] if plain else [[face[0], face[1], face[2]], [face[0], face[2], face[3]]]
+
+
 class Obj:
     """An OBJ file: parts, each a name, a material and a shape."""
 
@@ -296,7 +310,7 @@ class Obj:
                 lines += ["vt " + " ".join(number(x) for x in uv) for uv in uvs]
             lines += [f"usemtl {material}"] if material else []
             lines.append("s 1" if name in smooth else "s off")
-            for face in shape.faces:
+            for face in (part for face in shape.faces for part in unfolded(face, shape.points)):
                 corners = [f"{first + i}/{first_uv + i}" if uvs else str(first + i) for i in face]
                 lines.append("f " + " ".join(corners))
                 count += len(face) - 2

@@ -155,6 +155,8 @@ struct Counts {
     first_sample: u32,
     /// Number after that of the last sample; none where a pass was not finished, so that some pixels have more than others.
     end_sample: Option<u32>,
+    /// Where the samples were to end, if that was said.
+    wanted_end: Option<u32>,
     rays: u64,
     shadow_rays: u64,
     dropped: u64,
@@ -175,6 +177,7 @@ pub fn save(path: &Path, rendered: &Rendered, provenance: &Provenance) -> Result
     let counts = Counts {
         first_sample: film.first_sample,
         end_sample: (least == most).then_some(film.first_sample + most),
+        wanted_end: progress.limits.spp,
         rays: progress.rays,
         shadow_rays: progress.shadow_rays,
         dropped: rendered.dropped,
@@ -313,9 +316,10 @@ pub fn merge(paths: &[PathBuf]) -> Result<(Rendered, Provenance)> {
     let mut first: Option<(Provenance, &PathBuf)> = None;
     for path in paths {
         let (provenance, counts) = about(path)?;
-        let Some(end) = counts.end_sample.filter(|end| *end > counts.first_sample) else {
+        let whole = |end: &u32| *end > counts.first_sample && counts.wanted_end.is_none_or(|wanted| *end >= wanted);
+        let Some(end) = counts.end_sample.filter(whole) else {
             return Err(Error::Usage(format!(
-                "{}: its render was not finished: go on with it (--checkpoint {} --resume), then merge",
+                "{}: its render was not finished: go on with it (--checkpoint {} --resume -o ANOTHER.exr), then merge",
                 path.display(),
                 path.display()
             )));

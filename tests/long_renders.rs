@@ -296,7 +296,7 @@ fn an_unfinished_part_is_not_merged() {
     wait_for(&folder.path("c.exr"), &mut child);
     child.kill().unwrap();
     child.wait().unwrap();
-    // Where the kill came between two passes, the next part is what is missing.
+    // Also where the kill came between two passes, so that all pixels have equally many samples.
     fails(folder.luminaire(&["merge", "c.exr", "-o", "a.exr"]), 2, &["c.exr", "not finished"]);
 }
 

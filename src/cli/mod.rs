@@ -39,7 +39,7 @@ const EXAMPLES: &str = "\
 Examples:
   luminaire render scenes/cornell/cornell.toml
   luminaire render model.obj -o model.png -o model.exr --spp 256
-  luminaire render model.obj -o model.png --checkpoint model.part.exr --resume
+  luminaire render model.obj -o model.png --checkpoint model.checkpoint.exr --resume
   luminaire view model.obj
   luminaire compare model.exr reference.exr
   luminaire inspect model.obj
@@ -59,7 +59,7 @@ Examples:
       as many samples as 30 seconds allow, and the figures of the run
   luminaire render model.obj --noise 0.02 --time 600 --error-map noise.png
       until the estimated error is 2 %, but no longer than ten minutes; and where it is how large
-  luminaire render model.obj --spp 4096 -o model.exr --checkpoint model.part.exr --resume
+  luminaire render model.obj --spp 4096 -o model.exr --checkpoint model.checkpoint.exr --resume
       goes on where it was, however it ended; the same command again after Ctrl-C, a crash or a power cut
   luminaire render model.obj --samples 1024..2048 -o part-1.exr
       one part of four, on one machine of four; `luminaire merge part-*.exr -o model.exr` joins them
@@ -85,8 +85,8 @@ Examples:
       a window of the size that the scene file says
   luminaire view model.obj --width 1280 --height 720 --backend compute-bvh
       another size, and our own BVH to begin with
-  luminaire view scenes/cornell/cornell.toml --spp 256 > camera.toml
-      the picture stops at 256 samples a pixel; C writes the camera to stdout, and beside it to cornell-camera-1.toml
+  luminaire view scenes/cornell/cornell.toml --spp 256
+      the picture stops at 256 samples a pixel; C prints the camera, and writes it to cornell-camera-1.toml
 
 Files go to the current folder: <SCENE>-view-1.png, -2, ...; none is ever replaced.";
 
