@@ -34,7 +34,7 @@ test: ## install what the tests want, then run them all
 	@if [ -f $(OLD_DRIVER) ]; then export LUMINAIRE_OLD_DRIVER="$$PWD/$(OLD_DRIVER)"; fi; \
 	if [ -f $(VALIDATION) ] || [ "$$LUMINAIRE_REQUIRE_GPU" = 1 ]; then export LUMINAIRE_VALIDATION=1; \
 	else echo "SKIP: the Vulkan validation layer is not installed; its complaints are not tested"; fi; \
-	echo cargo test --release; cargo test --release
+	echo cargo test --release --workspace; cargo test --release --workspace
 
 fuzz: ## search for input that breaks the program: TARGET=obj, mtl, scene or part, for SECONDS=1200 (wants cargo-fuzz: docs/reliability.md)
 	@mkdir -p fuzz/corpus/$(or $(TARGET),obj)
@@ -52,6 +52,6 @@ shaders: ## compile shaders/*.comp to shaders/spirv/ again (wants glslc)
 	scripts/build-shaders.sh
 
 lint: ## format, clippy and documentation, without changing anything
-	cargo fmt --check
-	cargo clippy --release --all-targets -- -D warnings
-	RUSTDOCFLAGS="-D warnings" cargo doc --release --no-deps --document-private-items
+	cargo fmt --all --check
+	cargo clippy --release --workspace --all-targets -- -D warnings
+	RUSTDOCFLAGS="-D warnings" cargo doc --release --workspace --no-deps --document-private-items

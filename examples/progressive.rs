@@ -5,7 +5,7 @@
 
 use luminaire::render::{End, Limits, Rendered};
 use luminaire::scene::{self, Scene};
-use luminaire::{backend, image_io};
+use luminaire::{backend, picture};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Sender, channel};
@@ -32,7 +32,7 @@ fn main() -> luminaire::Result<()> {
         let error = frame.error.map_or("not known yet".into(), |error| format!("{:.1} %", 100.0 * error));
         println!("{:5.1} samples a pixel, error {error}, {} bytes to show", frame.spp, frame.srgb.len());
     })?;
-    image_io::save(Path::new("progressive.png"), &rendered.film, scene.settings.exposure)?;
+    rendered.film.save(Path::new("progressive.png"), scene.settings.exposure)?;
     println!("progressive.png: {:.1} s", rendered.progress.seconds);
     Ok(())
 }
@@ -71,7 +71,7 @@ fn render(scene: &Scene, frames: Sender<Frame>, stop: &AtomicBool) -> luminaire:
         let frame = Frame {
             spp: rendered.progress.spp(),
             error: film.error().map(|error| error.relative()),
-            srgb: image_io::to_srgb8(&film.to_linear(), scene.settings.exposure),
+            srgb: picture::to_srgb8(&film.to_linear(), scene.settings.exposure),
         };
         // Where nobody looks any more, the render goes on all the same.
         let _ = frames.send(frame);

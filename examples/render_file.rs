@@ -3,7 +3,7 @@
 //! `cargo run --release --example render_file -- [SCENE [PICTURE]]`
 
 use luminaire::render::{End, Limits, Rendered};
-use luminaire::{backend, image_io, scene};
+use luminaire::{backend, picture, scene};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
@@ -16,7 +16,7 @@ fn main() -> luminaire::Result<()> {
 
 /// Renders `file` to `picture`, whose ending says the format; as many samples a pixel as the file says, or `spp`.
 pub fn render(file: &Path, picture: &Path, spp: Option<u32>) -> luminaire::Result<()> {
-    image_io::check_output(picture)?;
+    picture::check_output(picture)?;
     let scene = scene::load(file)?;
     for warning in &scene.warnings {
         eprintln!("warning: {warning}");
@@ -33,7 +33,7 @@ pub fn render(file: &Path, picture: &Path, spp: Option<u32>) -> luminaire::Resul
     let stop = AtomicBool::new(false);
     let rendered = renderer.resume(Rendered::nothing(renderer.size, 0)?, limits, &mut progress, &stop)?;
     eprintln!();
-    image_io::save(picture, &rendered.film, scene.settings.exposure)?;
+    rendered.film.save(picture, scene.settings.exposure)?;
     if let Some(error) = rendered.progress.error {
         println!("{}: estimated error {:.1} %", picture.display(), 100.0 * error.relative());
     }

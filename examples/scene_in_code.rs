@@ -4,12 +4,12 @@
 
 use luminaire::backend::{self, Backend, Request};
 use luminaire::glam::{Affine3A, Vec3};
-use luminaire::image_io::{self, Picture};
-use luminaire::measure::metrics::compare;
+use luminaire::picture::Picture;
 use luminaire::render::Limits;
 use luminaire::scene::build::{add, cube, empty, icosphere, lamp, matte, pinhole, quad};
 use luminaire::scene::{Material, Sampler, Scene};
 use luminaire::{Error, Film};
+use luminaire_measure::metrics::compare;
 
 fn main() -> luminaire::Result<()> {
     let scene = still_life(192, 128);
@@ -17,7 +17,7 @@ fn main() -> luminaire::Result<()> {
     let (_, reference) = &pictures[0];
     for (backend, film) in &pictures {
         let file = format!("scene_in_code-{backend}.png");
-        image_io::save(file.as_ref(), film, scene.settings.exposure)?;
+        film.save(file.as_ref(), scene.settings.exposure)?;
         let apart = compare(&picture(film), &picture(reference), 0)?;
         let noise = film.error().map_or(f64::NAN, |error| error.rel_mse);
         println!("{file}: relMSE {:.1e} against the reference, estimated {noise:.1e} against the truth", apart.relmse);
@@ -61,7 +61,7 @@ pub fn on_every_backend(scene: &Scene, spp: u32) -> luminaire::Result<Vec<(Backe
     Ok(pictures)
 }
 
-/// A film as a picture that can be compared with others, for example with one that [`image_io::read`] read.
+/// A film as a picture that can be compared with others, for example with one that [`picture::read`] read.
 pub fn picture(film: &Film) -> Picture {
     let rgb = film.to_linear().as_chunks().0.to_vec();
     Picture { width: film.width, height: film.height, rgb, error: None, clamped: false }

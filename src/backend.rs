@@ -3,8 +3,8 @@
 use crate::film::Film;
 use crate::gpu::{Device, GpuTracer, Instance, PhysicalDevice};
 use crate::reference::Reference;
-use crate::render::{self, End, Limits, Rendered, Tracer};
-use crate::scene::{FilmSettings, Integrator, Scene, Sensor};
+use crate::render::{self, End, Limits, Rendered, SceneTracer};
+use crate::scene::Scene;
 use crate::{Error, Result};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
@@ -37,33 +37,6 @@ pub struct Request {
     pub backend: Option<Backend>,
     /// A device by index or part of its name; none: the best.
     pub device: Option<String>,
-}
-
-/// A tracer of a whole scene that can be changed: then it is as if it had been opened with what is new, but what rays are traced against stays, which
-/// is most of the work.
-pub trait SceneTracer: Tracer {
-    /// Looks at the scene from elsewhere, or with another film. The kind of projection has to be the one that it was opened with.
-    ///
-    /// # Errors
-    /// If the device fails.
-    fn look(&mut self, sensor: &Sensor, film: &FilmSettings) -> Result<()>;
-
-    /// Takes another integrator.
-    ///
-    /// # Errors
-    /// If its paths never end, or the device fails.
-    fn integrate(&mut self, integrator: &Integrator) -> Result<()>;
-}
-
-/// Refuses an integrator whose paths never end.
-pub(crate) fn check_ends(integrator: &Integrator) -> Result<()> {
-    match integrator {
-        Integrator::Path(estimator) if !estimator.ends() => Err(Error::Usage(format!(
-            "without extinction a path never ends: limit max_bounces to at most {}",
-            crate::scene::Estimator::MOST_BOUNCES
-        ))),
-        _ => Ok(()),
-    }
 }
 
 /// A tracer with a scene, ready to run; [`open`] makes it.
@@ -154,7 +127,7 @@ pub struct DeviceReport {
 /// If the request names a device or backend that is not there, the scene does not fit it, or its estimator has paths that
 /// never end ([`Estimator::ends`](crate::scene::Estimator::ends)).
 pub fn open(scene: &Scene, request: &Request) -> Result<Renderer> {
-    check_ends(&scene.integrator)?;
+    scene.integrator.check_ends()?;
     if request.backend == Some(Backend::Cpu) {
         if let Some(device) = &request.device {
             return Err(Error::Usage(format!("--device {device} has no meaning with --backend cpu")));
@@ -219,19 +192,6 @@ fn preferred(ray_query: bool, software: bool) -> (Backend, &'static str) {
     }
 }
 
-/// How much we would like to run on a device: GPUs before software, discrete before integrated, ray queries first.
-pub(crate) fn rank(device_type: ash::vk::PhysicalDeviceType, ray_query: bool) -> (u8, bool) {
-    use ash::vk::PhysicalDeviceType as Type;
-    let kind = match device_type {
-        Type::DISCRETE_GPU => 4,
-        Type::INTEGRATED_GPU => 3,
-        Type::VIRTUAL_GPU => 2,
-        Type::CPU => 0,
-        _ => 1,
-    };
-    (kind, ray_query)
-}
-
 /// The device and backend for a request.
 fn choose<'a>(devices: &'a [PhysicalDevice], request: &Request) -> Result<(&'a PhysicalDevice, Backend, String)> {
     let wants_ray_query = request.backend == Some(Backend::RayQuery);
@@ -245,7 +205,7 @@ fn choose<'a>(devices: &'a [PhysicalDevice], request: &Request) -> Result<(&'a P
             .filter(|d| d.usable().is_ok() && (d.ray_query || !wants_ray_query))
             // The first of the best, in the loader's order.
             .rev()
-            .max_by_key(|d| rank(d.device_type, d.ray_query))
+            .max_by_key(|d| d.rank())
             .ok_or_else(|| {
                 let found: Vec<String> = devices.iter().map(|d| d.name.clone()).collect();
                 let found = if found.is_empty() { "there is no device at all".into() } else { found.join(", ") };
@@ -321,8 +281,7 @@ pub fn devices() -> Result<Vec<DeviceReport>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Estimator, Extinction, load};
-    use ash::vk::PhysicalDeviceType as Type;
+    use crate::scene::{Estimator, Extinction, Integrator, load};
 
     #[test]
     fn ray_query_where_a_gpu_offers_it_and_the_bvh_elsewhere() {
@@ -369,19 +328,6 @@ mod tests {
         let turned = Rendered::nothing((2, 3), 0).unwrap();
         let error = renderer.resume(turned, limits, &mut |_| {}, &AtomicBool::new(false)).unwrap_err();
         assert!(error.exit_code() == 2 && error.to_string().contains("3 x 2"), "{error}");
-    }
-
-    #[test]
-    fn gpus_come_before_software_and_ray_queries_first() {
-        let order = [
-            rank(Type::CPU, false),
-            rank(Type::CPU, true),
-            rank(Type::VIRTUAL_GPU, true),
-            rank(Type::INTEGRATED_GPU, true),
-            rank(Type::DISCRETE_GPU, false),
-            rank(Type::DISCRETE_GPU, true),
-        ];
-        assert!(order.is_sorted());
     }
 
     #[test]

@@ -3,7 +3,7 @@
 //! What comes out looks better and is not a measurement any more: it has a bias that no estimate of the error knows.
 
 use crate::film::{Aovs, Film};
-use crate::image_io::Values;
+use crate::picture::Values;
 use crate::{Error, Result};
 use oidn::{Device, RayTracing};
 

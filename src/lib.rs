@@ -15,7 +15,7 @@
 //!
 //! ```
 //! use luminaire::backend::{self, Backend, Request};
-//! use luminaire::{image_io, render::Limits, scene};
+//! use luminaire::{render::Limits, scene};
 //!
 //! # fn main() -> luminaire::Result<()> {
 //! # let temporary = tempfile::tempdir().unwrap();
@@ -26,7 +26,7 @@
 //! let request = Request { backend: Some(Backend::Cpu), device: None };
 //! let mut renderer = backend::open(&scene, &request)?;
 //! let film = renderer.render(Limits { spp: Some(4), ..Limits::default() })?;
-//! image_io::save(&folder.join("cornell.png"), &film, scene.settings.exposure)?;
+//! image::save(&folder.join("cornell.png"), &film, scene.settings.exposure)?;
 //! # assert_eq!((film.width, film.least_samples()), (32, 4));
 //! # assert!(folder.join("cornell.png").is_file());
 //! # Ok(())
@@ -70,23 +70,20 @@
 //! literally (the half vector, missing densities, emission counted twice), what it means is computed; the extinction without
 //! re-weighting and the threshold stay selectable ([`scene::PRESETS`]), because their errors are instructive.
 
-pub mod accel;
 pub mod backend;
-pub mod bvh;
 #[cfg(feature = "denoise")]
 pub mod denoise;
 pub mod error;
+pub mod files;
 pub mod film;
 pub mod gpu;
-pub mod image_io;
-pub mod measure;
 mod memory;
 pub mod part;
+pub mod picture;
 pub mod reference;
 pub mod render;
 pub mod sampling;
 pub mod scene;
-pub mod view;
 
 pub use backend::Renderer;
 pub use error::{Error, Result};

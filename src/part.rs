@@ -6,7 +6,7 @@
 //! `dropped.p`. Two texts in the head, both JSON, say what was rendered ([`Provenance`]) and what else was counted.
 
 use crate::film::{Film, SampleId};
-use crate::image_io::{self, Attribute, Values};
+use crate::picture::{self, Attribute, Values};
 use crate::render::{DROPPED_NAMED, LEAST_FOR_NOISE, Rendered, is_a_pass};
 use crate::sampling::PARTS;
 use crate::scene::Scene;
@@ -202,7 +202,7 @@ pub fn save(path: &Path, rendered: &Rendered, provenance: &Provenance) -> Result
     let json = |value: serde_json::Result<String>| value.map_err(|e| Error::write(path, e));
     let (provenance, counts) = (json(serde_json::to_string(provenance))?, json(serde_json::to_string(&counts))?);
     let about = vec![(PROVENANCE, Attribute::Text(&provenance)), (COUNTS, Attribute::Text(&counts))];
-    image_io::save_exr(path, film, channels, about)
+    film.save_exr(path, channels, about)
 }
 
 /// Reads the head of a file.
@@ -211,7 +211,7 @@ fn about(path: &Path) -> Result<(Provenance, Counts)> {
     if std::fs::metadata(path).is_ok_and(|about| !about.is_file()) {
         return Err(Error::read(path, "it is not a file"));
     }
-    let texts = image_io::read_texts(path).map_err(|e| Error::read(path, e))?;
+    let texts = picture::read_texts(path).map_err(|e| Error::read(path, e))?;
     let text = |name: &str| {
         texts.get(name).ok_or_else(|| {
             Error::read(
@@ -235,7 +235,7 @@ pub fn read(path: &Path) -> Result<(Rendered, Provenance)> {
     let damaged = |what: &str| Error::read(path, format!("it is damaged: {what}"));
     Film::check_size(provenance.width, provenance.height)?;
     let size = (provenance.width, provenance.height);
-    let mut channels = image_io::read_channels(path, MOST_CHANNELS, size).map_err(|e| Error::read(path, e))?;
+    let mut channels = picture::read_channels(path, MOST_CHANNELS, size).map_err(|e| Error::read(path, e))?;
     let mut rendered = Rendered::nothing(size, counts.first_sample)?;
     let film = &mut rendered.film;
     let mut take = |name: &str| channels.take_integers(name);

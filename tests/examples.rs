@@ -8,7 +8,7 @@ mod render_file;
 #[path = "../examples/scene_in_code.rs"]
 mod scene_in_code;
 
-use luminaire::measure::metrics::compare;
+use luminaire_measure::metrics::compare;
 
 #[test]
 fn a_file_becomes_a_picture() {
@@ -20,7 +20,7 @@ fn a_file_becomes_a_picture() {
     std::fs::write(folder.path().join("wall.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
     let picture = folder.path().join("wall.png");
     render_file::render(&scene, &picture, Some(4)).unwrap();
-    let picture = luminaire::image_io::read(&picture).unwrap();
+    let picture = luminaire::picture::read(&picture).unwrap();
     assert_eq!((picture.width, picture.height), (8, 6));
     assert!(picture.rgb.iter().flatten().all(|v| *v > 0.0), "{:?}", picture.rgb);
 }

@@ -1,6 +1,6 @@
 //! What the camera sees first (arbitrary output variables, AOVs): what denoisers and compositing programs want to know besides the picture.
 
-use crate::image_io::Values;
+use crate::picture::Values;
 
 /// Depth of a pixel that sees nothing, as Blender writes it.
 const NOTHING_SEEN: f32 = 1e10;

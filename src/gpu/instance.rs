@@ -22,17 +22,19 @@ pub fn validation_messages() -> usize {
 
 /// A Vulkan instance.
 pub struct Instance {
-    pub(crate) raw: ash::Instance,
+    /// For those who call Vulkan themselves, as the window does.
+    pub raw: ash::Instance,
     pub(super) debug_utils: bool,
     messenger: Option<(ext::debug_utils::Instance, vk::DebugUtilsMessengerEXT)>,
-    // Last, so that the library stays loaded until everything else is gone.
-    pub(crate) entry: ash::Entry,
+    /// The loader. Last, so that the library stays loaded until everything else is gone.
+    pub entry: ash::Entry,
 }
 
 /// A device that the loader knows, with what it offers.
 pub struct PhysicalDevice {
     pub(super) instance: Arc<Instance>,
-    pub(crate) raw: vk::PhysicalDevice,
+    /// For those who call Vulkan themselves, as the window does.
+    pub raw: vk::PhysicalDevice,
     /// Index in the loader's order, as `--device` takes it.
     pub index: usize,
     /// Name of the device.
@@ -71,7 +73,7 @@ impl Instance {
     ///
     /// # Errors
     /// As for [`Instance::new`], and if it does not know one of them.
-    pub(crate) fn with_extensions(wanted: &[&'static CStr]) -> Result<Arc<Self>> {
+    pub fn with_extensions(wanted: &[&'static CStr]) -> Result<Arc<Self>> {
         // SAFETY: the loader found by the system's rules is trusted to be a Vulkan loader.
         let entry = unsafe { ash::Entry::load() }.map_err(|e| {
             Error::NoDevice(format!(
@@ -268,6 +270,11 @@ impl PhysicalDevice {
         self.device_type == vk::PhysicalDeviceType::CPU
     }
 
+    /// How much we would like to run on it: GPUs before software, discrete before integrated, ray queries first.
+    pub fn rank(&self) -> (u8, bool) {
+        rank(self.device_type, self.ray_query)
+    }
+
     /// What kind of device it is, in words.
     pub fn kind(&self) -> &'static str {
         match self.device_type {
@@ -332,4 +339,35 @@ unsafe extern "system" fn on_message(
     eprintln!("Vulkan validation ({severity:?}): {}", message.to_string_lossy());
     VALIDATION_MESSAGES.fetch_add(1, Ordering::SeqCst);
     vk::FALSE
+}
+
+fn rank(device_type: vk::PhysicalDeviceType, ray_query: bool) -> (u8, bool) {
+    use vk::PhysicalDeviceType as Type;
+    let kind = match device_type {
+        Type::DISCRETE_GPU => 4,
+        Type::INTEGRATED_GPU => 3,
+        Type::VIRTUAL_GPU => 2,
+        Type::CPU => 0,
+        _ => 1,
+    };
+    (kind, ray_query)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::rank;
+    use ash::vk::PhysicalDeviceType as Type;
+
+    #[test]
+    fn gpus_come_before_software_and_ray_queries_first() {
+        let order = [
+            rank(Type::CPU, false),
+            rank(Type::CPU, true),
+            rank(Type::VIRTUAL_GPU, true),
+            rank(Type::INTEGRATED_GPU, true),
+            rank(Type::DISCRETE_GPU, false),
+            rank(Type::DISCRETE_GPU, true),
+        ];
+        assert!(order.is_sorted());
+    }
 }

@@ -1,10 +1,12 @@
-//! Every Vulkan handle lives here (and in [`crate::accel`]): device, buffers, commands, pipelines, and the GPU tracer.
+//! Every Vulkan handle lives here: device, buffers, commands, pipelines, and the GPU tracer.
 //!
 //! Each object holds an `Arc<Device>`; the device owns the instance, the allocator and the queue and drops them in order.
 //! A raw handle is wrapped the moment it exists, so an early return cannot leak it.
 
+pub mod accel;
 mod budget;
 mod buffer;
+pub mod bvh;
 mod commands;
 #[cfg(feature = "shaderc")]
 mod compile;

@@ -4,8 +4,8 @@ use super::budget::Budget;
 use super::model::KernelModel;
 use super::{Binding, Buffer, Device, TexelBuffer, layout};
 use crate::Result;
-use crate::accel::Geometry;
-use crate::bvh::MeshBvh;
+use crate::gpu::accel::Geometry;
+use crate::gpu::bvh::MeshBvh;
 use crate::scene::{
     EmissiveTriangle, Environment, EnvironmentDistribution, FilmSettings, Integrator, Luminaire, LuminaireTable,
     Material, Projection, SampledLuminaire, Scene, Sensor, Texture, widen,

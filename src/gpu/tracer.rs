@@ -6,9 +6,8 @@ use super::scene::GpuScene;
 use super::shader::Shader;
 use super::{Buffer, Device, Kernel, layout};
 use crate::Result;
-use crate::backend::{SceneTracer, check_ends};
 use crate::film::{AovSum, Batch, PixelSum, Rays, SampleId, Tile};
-use crate::render::{Traced, Tracer};
+use crate::render::{SceneTracer, Traced, Tracer};
 use crate::sampling::PARTS;
 use crate::scene::{FilmSettings, Integrator, Scene, Sensor};
 use ash::vk;
@@ -98,7 +97,7 @@ impl SceneTracer for GpuTracer {
     }
 
     fn integrate(&mut self, integrator: &Integrator) -> Result<()> {
-        check_ends(integrator)?;
+        integrator.check_ends()?;
         self.scene.integrate(integrator)?;
         self.kernel = kernel(&self.device, &self.scene, self.ray_query, &self.sums, &self.dropped)?;
         Ok(())

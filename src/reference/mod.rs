@@ -26,9 +26,8 @@ mod tree;
 pub mod warp;
 
 use crate::Result;
-use crate::backend::{SceneTracer, check_ends};
 use crate::film::{AovSum, Batch, MOST_RADIANCE, PixelSum, Rays, SampleId, Tile};
-use crate::render::{Traced, Tracer};
+use crate::render::{SceneTracer, Traced, Tracer};
 use crate::scene::{FilmSettings, Integrator, LuminaireTable, Scene, Sensor, widen};
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
@@ -107,7 +106,7 @@ impl SceneTracer for Reference {
     }
 
     fn integrate(&mut self, integrator: &Integrator) -> Result<()> {
-        check_ends(integrator)?;
+        integrator.check_ends()?;
         self.scene.integrator = *integrator;
         Ok(())
     }

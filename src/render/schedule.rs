@@ -4,7 +4,7 @@ use crate::film::{Batch, Film, Tile};
 use crate::sampling::PARTS;
 
 /// Samples (over all pixels) of the first batch: few, because each may be a path of ten thousand bounces.
-pub(crate) const FIRST_BUDGET: u64 = 64;
+pub const FIRST_BUDGET: u64 = 64;
 
 /// The most samples of a pixel in one batch: a workgroup for each group of every part, and as many as every Vulkan device takes along an axis.
 const MAX_PASS: u64 = 65_535 * (LONGEST * PARTS) as u64;
@@ -15,7 +15,7 @@ const LONGEST: u32 = 4;
 
 /// How many samples the next batch may hold, after one of `samples` took `seconds`: less at once if that was too long, else at
 /// most four times as many. A small batch (the rest of a pass) that took little says nothing against the present budget.
-pub(crate) fn next_budget(budget: u64, samples: u64, seconds: f64, target: f64) -> u64 {
+pub fn next_budget(budget: u64, samples: u64, seconds: f64, target: f64) -> u64 {
     let fitting = samples as f64 * target / seconds.max(1e-9);
     if seconds > target {
         (fitting as u64).clamp(1, budget)
@@ -51,7 +51,7 @@ pub(crate) fn is_a_pass(samples: std::ops::Range<u32>) -> bool {
 
 /// Cuts the work into batches: pass after pass over the whole film, so that it fills evenly.
 #[derive(Debug)]
-pub(crate) struct Schedule {
+pub struct Schedule {
     width: u32,
     height: u32,
     spp: u32,
@@ -67,7 +67,7 @@ pub(crate) struct Schedule {
 impl Schedule {
     /// What is left to do of a film until every pixel has all samples before number `end`. In an unfinished pass, which is told by
     /// some pixels having fewer samples than others, the first of these is next.
-    pub(crate) fn of(film: &Film, end: u32) -> Self {
+    pub fn of(film: &Film, end: u32) -> Self {
         let (width, height) = (film.width, film.height);
         let [start, pass_end] = [film.least_samples(), film.most_samples()].map(|n| film.first_sample + n);
         let most = film.most_samples();
@@ -81,7 +81,7 @@ impl Schedule {
     }
 
     /// Samples that all pixels have if the last batch ended a pass.
-    pub(crate) fn pass_done(&self) -> Option<u32> {
+    pub fn pass_done(&self) -> Option<u32> {
         (self.y == self.height).then_some(self.pass.end)
     }
 
@@ -91,7 +91,7 @@ impl Schedule {
     }
 
     /// The next batch, of at most `budget` samples and `max_sums` sums, but at least a group of every part of one pixel.
-    pub(crate) fn next(&mut self, budget: u64, max_sums: usize) -> Option<Batch> {
+    pub fn next(&mut self, budget: u64, max_sums: usize) -> Option<Batch> {
         if self.width == 0 {
             return None;
         }

@@ -1,7 +1,7 @@
 //! The image of an environment.
 
 use super::EnvironmentImage;
-use crate::image_io::image_file::ImageFile;
+use crate::picture::image_file::ImageFile;
 use glam::Vec3;
 use std::path::Path;
 

@@ -1,5 +1,6 @@
 //! Which of the lecture's estimators computes the radiance along a camera ray.
 
+use crate::{Error, Result};
 use glam::Vec3;
 use serde::Deserialize;
 
@@ -27,6 +28,20 @@ impl Integrator {
                 max_bounces: Some(0),
                 ..Estimator::default()
             },
+        }
+    }
+
+    /// Refuses what never ends.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if its paths have no end ([`Estimator::ends`]).
+    pub fn check_ends(&self) -> Result<()> {
+        match self {
+            Integrator::Path(estimator) if !estimator.ends() => Err(Error::Usage(format!(
+                "without extinction a path never ends: limit max_bounces to at most {}",
+                Estimator::MOST_BOUNCES
+            ))),
+            _ => Ok(()),
         }
     }
 }
@@ -156,7 +171,7 @@ impl Estimator {
     }
 
     /// Whether every path ends: chance ends it, or a limit of at most [`Estimator::MOST_BOUNCES`]. The tracers do not check it, and
-    /// may never come back where it is false; [`backend::open`](crate::backend::open) does.
+    /// may never come back where it is false; `backend::open` does ([`Integrator::check_ends`]).
     pub fn ends(&self) -> bool {
         self.extinction != Extinction::Off || self.max_bounces.is_some_and(|bounces| bounces <= Self::MOST_BOUNCES)
     }

@@ -1,6 +1,6 @@
 //! Tests of hypotheses. A `p` is the probability that a right program gives a result at least as far off.
 
-pub use luminaire::measure::statistics::*;
+pub use luminaire_measure::statistics::*;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// Tests fail below this `p`. Seeds are fixed, so a test that passes keeps passing; a right program would fail a test once in

@@ -4,7 +4,7 @@ use super::*;
 use crate::common::scenes::*;
 use glam::{Affine3A, Vec3};
 use luminaire::film::{AovSum, Tile};
-use luminaire::image_io::Values;
+use luminaire::picture::Values;
 use luminaire::reference::Reference;
 use luminaire::render::{Tracer, aovs};
 use luminaire::scene::build::{add, empty, lamp, matte, quad};

@@ -4,10 +4,10 @@ use super::*;
 use crate::common::scenes::*;
 use glam::{Affine3A, DAffine3, DMat3, DVec3, Mat3, Vec3};
 use luminaire::gpu::probe::{Function, Probe};
-use luminaire::measure::rays::{self, Ray};
 use luminaire::reference::Reference;
 use luminaire::reference::intersect::Hit;
 use luminaire::scene::{Mesh, Scene};
+use luminaire_measure::rays::{self, Ray};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 

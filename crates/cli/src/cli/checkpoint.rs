@@ -1,0 +1,132 @@
+//! `--checkpoint`, `--resume`, `--samples`: renders that lose nothing, and parts of renders.
+
+use super::{RenderOptions, tell};
+use luminaire::part::{self, Provenance};
+use luminaire::render::Rendered;
+use luminaire::scene::Scene;
+use luminaire::{Error, Result, files, picture};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// Where a render is saved while it runs.
+pub struct Checkpoint<'a> {
+    path: &'a Path,
+    provenance: Provenance,
+    every: Duration,
+    due: Instant,
+    quiet: bool,
+}
+
+impl<'a> Checkpoint<'a> {
+    /// What `--checkpoint` asks for.
+    pub fn of(options: &'a RenderOptions, scene: &Scene) -> Option<Self> {
+        let every = Duration::from_secs_f64(options.checkpoint_every);
+        Some(Checkpoint {
+            path: options.checkpoint.as_deref()?,
+            provenance: Provenance::of(scene),
+            every,
+            due: Instant::now() + every,
+            quiet: options.quiet,
+        })
+    }
+
+    /// Saves the render if it is time to. A failure costs nothing but this save, and is told.
+    pub fn update(&mut self, rendered: &Rendered) {
+        if Instant::now() < self.due {
+            return;
+        }
+        if let Err(error) = self.save(rendered)
+            && !self.quiet
+        {
+            tell(&format!("warning: {error}; the render goes on, and the checkpoint is tried again"));
+        }
+        // Counted from the end, so that a slow disk does not keep the render from going on.
+        self.due = Instant::now() + self.every;
+    }
+
+    /// Saves the render.
+    pub fn save(&self, rendered: &Rendered) -> Result<()> {
+        part::save(self.path, rendered, &self.provenance)
+    }
+}
+
+/// Everything else that is written.
+fn others_outputs(options: &RenderOptions) -> Vec<&Path> {
+    let paths = options.output.iter().map(PathBuf::as_path);
+    #[cfg(feature = "denoise")]
+    let paths = paths.chain(options.denoised.as_deref());
+    paths.collect()
+}
+
+/// Checks the options that concern parts and checkpoints, before anything is loaded.
+pub fn check(options: &RenderOptions) -> Result<()> {
+    let is_exr = |path: &Path| matches!(picture::Format::of(path), Ok(picture::Format::Exr));
+    if options.samples.is_some() && !options.output.iter().any(|path| is_exr(path)) {
+        return Err(Error::Usage(
+            "--samples renders a part, which only an EXR file holds: say which with -o PART.exr".into(),
+        ));
+    }
+    if options.aov && !options.output.iter().any(|path| is_exr(path)) {
+        return Err(Error::Usage("--aov adds layers, which only an EXR file holds: name one with -o FILE.exr".into()));
+    }
+    let Some(path) = &options.checkpoint else { return Ok(()) };
+    if !is_exr(path) {
+        return Err(Error::Usage(format!("--checkpoint {}: the name must end in .exr", path.display())));
+    }
+    if others_outputs(options).iter().any(|output| files::same_file(output, path)) {
+        return Err(Error::Usage(format!("--checkpoint {}: the picture itself is written there", path.display())));
+    }
+    if exists(path)? && !options.resume {
+        return Err(Error::Usage(format!(
+            "--checkpoint {}: there is a file already: go on from it with --resume, or remove it to start anew",
+            path.display()
+        )));
+    }
+    files::check_writable(path)
+}
+
+/// What the render begins with: what the checkpoint holds, or nothing.
+pub fn begin(options: &RenderOptions, scene: &Scene, say: &dyn Fn(&str)) -> Result<Rendered> {
+    let first = options.samples.as_ref().map_or(0, |samples| samples.start);
+    let size = (scene.film.width, scene.film.height);
+    let Some(path) = options.checkpoint.as_deref().filter(|_| options.resume) else {
+        return Rendered::nothing(size, first);
+    };
+    others_outputs(options).into_iter().chain([path]).for_each(files::remove_left_over);
+    if !exists(path)? {
+        say(&format!("{}: no checkpoint yet; starting anew", path.display()));
+        return Rendered::nothing(size, first);
+    }
+    let rendered = part::resume(path, scene)?;
+    if rendered.film.first_sample != first {
+        return Err(Error::read(
+            path,
+            format!(
+                "it holds samples from number {} on, but those from {first} on are asked for: give the same --samples, or \
+                 start anew with another name",
+                rendered.film.first_sample
+            ),
+        ));
+    }
+    say(&format!(
+        "{}: going on from {:.4} samples a pixel, after {:.1} s",
+        path.display(),
+        rendered.progress.spp(),
+        rendered.progress.seconds
+    ));
+    Ok(rendered)
+}
+
+/// Whether there is a file. Not to know is an error: a file that cannot be seen for a moment must not be overwritten.
+fn exists(path: &Path) -> Result<bool> {
+    path.try_exists().map_err(|e| Error::read(path, e))
+}
+
+/// Reads `A..B`.
+pub fn range(text: &str) -> std::result::Result<Range<u32>, String> {
+    let range = text.split_once("..").and_then(|(a, b)| Some(a.trim().parse().ok()?..b.trim().parse().ok()?));
+    range.filter(|range: &Range<u32>| range.start < range.end).ok_or_else(|| {
+        "expected the numbers of the first sample and of the one after the last, for example 0..64 or 64..128".into()
+    })
+}

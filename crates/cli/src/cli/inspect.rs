@@ -1,0 +1,231 @@
+//! `luminaire inspect`.
+
+use super::inspect_tables::{luminaires, materials, meshes, objects, rgb, textures};
+use super::{estimator, print, table};
+use luminaire::Result;
+use luminaire::gpu::model::KernelModel;
+use luminaire::scene::{self, Environment, Mesh, Projection, Scene};
+use std::path::Path;
+use std::process::ExitCode;
+
+/// Loads a scene and prints what is in it.
+pub fn run(path: &Path) -> Result<ExitCode> {
+    print(&describe(&scene::load(path)?))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Everything that was loaded.
+fn describe(scene: &Scene) -> String {
+    let (low, high) = scene.world_bounds();
+    let stored: usize = scene.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
+    let mut text = format!("{}\n\n", scene.path.display());
+    text += &table(
+        0,
+        &[
+            row(
+                "triangles",
+                format!(
+                    "{} in {} {}; {stored} stored in {} {}",
+                    scene.triangle_count(),
+                    scene.objects.len(),
+                    if scene.objects.len() == 1 { "object" } else { "objects" },
+                    scene.meshes.len(),
+                    if scene.meshes.len() == 1 { "mesh" } else { "meshes" }
+                ),
+            ),
+            row("bounds", format!("{low:.4} to {high:.4}")),
+            row("sensor", sensor(scene)),
+            row(
+                "film",
+                format!(
+                    "{} x {} pixels, {} filter of radius {}",
+                    scene.film.width,
+                    scene.film.height,
+                    filter(scene.film.filter),
+                    scene.film.filter_radius
+                ),
+            ),
+            row("environment", scene.environment.as_ref().map_or("none".into(), environment)),
+            row("integrator", estimator::describe(&scene.integrator)),
+            row(
+                "render",
+                format!(
+                    "{} samples a pixel, {:?} sampler, seed {}, exposure {}",
+                    scene.settings.spp, scene.settings.sampler, scene.settings.seed, scene.settings.exposure
+                ),
+            ),
+            row("kernel", KernelModel::of(scene).to_string()),
+            row("memory", memory(scene)),
+        ],
+    );
+    text += &format!("\nmeshes\n{}", table(2, &meshes(scene)));
+    text += &format!("\nobjects\n{}", table(2, &objects(scene)));
+    text += &format!("\nmaterials\n{}", table(2, &materials(scene)));
+    if !scene.textures.is_empty() {
+        text += &format!("\ntextures\n{}", table(2, &textures(scene)));
+    }
+    text += &format!("\nluminaires\n{}", table(2, &luminaires(scene)));
+    text += "\nwarnings\n";
+    if scene.warnings.is_empty() {
+        text += "  none\n";
+    }
+    for warning in &scene.warnings {
+        text += &format!("  {warning}\n");
+    }
+    text
+}
+
+fn row(name: &str, value: String) -> Vec<String> {
+    vec![name.into(), value]
+}
+
+fn sensor(scene: &Scene) -> String {
+    let s = &scene.sensor;
+    let projection = match s.projection {
+        Projection::Perspective { fov } => format!("{fov} degrees high"),
+        Projection::Orthographic { height } => format!("orthographic, {height} high"),
+    };
+    let lens = s.lens.map_or(String::new(), |lens| {
+        let shape = match (lens.blades, lens.rotation) {
+            (0, _) => "round".into(),
+            (blades, 0.0) => format!("{blades} blades"),
+            (blades, turn) => format!("{blades} blades, turned by {turn} degrees"),
+        };
+        format!(", aperture of radius {} ({shape}), in focus at distance {}", lens.radius, lens.focus_distance)
+    });
+    format!("at {}, looking at {}, up {}, {projection}{lens}", rgb(s.position), rgb(s.target), rgb(s.up))
+}
+
+/// As scene files write it.
+fn filter(filter: scene::Filter) -> &'static str {
+    match filter {
+        scene::Filter::Box => "box",
+        scene::Filter::Tent => "tent",
+        scene::Filter::Gaussian => "gaussian",
+        scene::Filter::BlackmanHarris => "blackman-harris",
+    }
+}
+
+fn environment(environment: &Environment) -> String {
+    match &environment.image {
+        None => format!("radiance {} from everywhere", rgb(environment.radiance)),
+        Some(image) => format!(
+            "{}, {} x {} texels, times {}, turned by {} degrees",
+            image.name,
+            image.width,
+            image.height,
+            rgb(environment.radiance),
+            environment.rotation
+        ),
+    }
+}
+
+/// Bytes of the data itself; the acceleration structures depend on the backend.
+fn memory(scene: &Scene) -> String {
+    let mesh = |m: &Mesh| {
+        size_of_val(&m.positions[..])
+            + size_of_val(&m.normals[..])
+            + size_of_val(&m.uvs[..])
+            + size_of_val(&m.triangles[..])
+    };
+    let geometry: usize = scene.meshes.iter().map(mesh).sum();
+    let images: usize = scene.textures.iter().map(|texture| size_of_val(&texture.texels[..])).sum();
+    let film = u64::from(scene.film.width) * u64::from(scene.film.height) * 28;
+    let size = |bytes: f64| match bytes {
+        b if b < f64::from(1 << 20) => format!("{:.1} KiB", b / f64::from(1 << 10)),
+        b => format!("{:.1} MiB", b / f64::from(1 << 20)),
+    };
+    let images = if images > 0 { format!(", {} of textures", size(images as f64)) } else { String::new() };
+    format!(
+        "{} of geometry{images} and {} of film, besides about 100 bytes a stored triangle for the BVH",
+        size(geometry as f64),
+        size(film as f64)
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use luminaire::glam::Vec3;
+    use luminaire::scene::{
+        Estimator, FilmSettings, Filter, Integrator, Lens, Luminaire, Maps, Material, Object, RenderSettings, Sensor,
+        Texture, Triangle,
+    };
+
+    #[test]
+    fn everything_is_named() {
+        let emission = Vec3::new(1.0, 2.0, 3.0);
+        let material = Material {
+            name: "lamp".into(),
+            lambert: Vec3::splat(0.5),
+            emission,
+            reflection: Vec3::splat(0.25),
+            transmission: Vec3::splat(0.125),
+            eta: Some(1.5),
+            opacity: 0.75,
+            maps: Maps { lambert: Some(0), ..Maps::default() },
+            ..Material::default()
+        };
+        let estimator = Estimator { max_bounces: Some(4), ..Estimator::default() };
+        let scene = Scene {
+            path: "test.obj".into(),
+            meshes: vec![Mesh {
+                name: "one.obj".into(),
+                positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
+                uvs: vec![luminaire::glam::Vec2::ZERO; 3],
+                triangles: vec![Triangle { vertices: [0, 1, 2], material: 0 }],
+                ..Mesh::default()
+            }],
+            objects: vec![
+                Object {
+                    name: "thing".into(),
+                    mesh: 0,
+                    object_to_world: luminaire::glam::Affine3A::from_scale(Vec3::new(-2.0, 1.0, 1.0)),
+                    material: None,
+                };
+                22
+            ],
+            materials: vec![material],
+            textures: vec![Texture {
+                name: "wood.png".into(),
+                width: 1,
+                height: 1,
+                texels: vec![Default::default()],
+                clamp: true,
+            }],
+            luminaires: vec![Luminaire::Point { position: Vec3::Z, intensity: Vec3::ONE }],
+            environment: Some(Environment { radiance: Vec3::splat(0.5), image: None, rotation: 0.0 }),
+            sensor: Sensor {
+                position: Vec3::Z,
+                target: Vec3::ZERO,
+                up: Vec3::Y,
+                projection: Projection::Perspective { fov: 40.0 },
+                lens: Some(Lens { radius: 0.25, focus_distance: 3.0, blades: 6, rotation: 10.0 }),
+            },
+            film: FilmSettings { width: 64, height: 48, filter: Filter::BlackmanHarris, filter_radius: 1.5 },
+            integrator: Integrator::Path(estimator),
+            settings: RenderSettings::default(),
+            warnings: vec!["one.obj:3: something odd".into()],
+        };
+        let text = describe(&scene);
+        for part in [
+            "22 in 22 objects; 1 stored in 1 mesh",
+            "64 x 48 pixels, blackman-harris filter of radius 1.5",
+            "40 degrees high, aperture of radius 0.25 (6 blades, turned by 10 degrees), in focus at distance 3",
+            "radiance (0.5 0.5 0.5) from everywhere",
+            "estimator `default`",
+            "at most 4 indirect bounces",
+            "Sobol sampler",
+            "glass of index 1.5, reflection (0.25 0.25 0.25), transmission (0.125 0.125 0.125); opacity 0.75; diffuse map wood.png",
+            "wood.png  1 x 1",
+            "mirrored, volume times 2.0000",
+            "... and 2 more",
+            "(1 2 3)",
+            "point",
+            "22 emissive triangles  total area 22.0000",
+            "  one.obj:3: something odd",
+        ] {
+            assert!(text.contains(part), "{part} is not in\n{text}");
+        }
+    }
+}

@@ -1,0 +1,166 @@
+//! The tables of `luminaire inspect`.
+
+use luminaire::glam::Vec3;
+use luminaire::scene::{Luminaire, LuminaireTable, Material, Mesh, SampledLuminaire, Scene};
+
+/// Meshes and what they have.
+pub(super) fn meshes(scene: &Scene) -> Vec<Vec<String>> {
+    let head = ["name", "triangles", "vertices", "normals", "texture coordinates"].map(String::from).to_vec();
+    let mesh = |m: &Mesh| {
+        let yes = |empty: bool| if empty { "no" } else { "yes" }.to_owned();
+        vec![
+            m.name.clone(),
+            m.triangles.len().to_string(),
+            m.positions.len().to_string(),
+            yes(m.normals.is_empty()),
+            yes(m.uvs.is_empty()),
+        ]
+    };
+    std::iter::once(head).chain(scene.meshes.iter().map(mesh)).collect()
+}
+
+/// More rows than anyone reads are left out.
+const MOST_OBJECTS: usize = 20;
+
+/// Objects and how they are placed.
+pub(super) fn objects(scene: &Scene) -> Vec<Vec<String>> {
+    let mut rows = vec![["name", "mesh", "material", "transform"].map(String::from).to_vec()];
+    for object in scene.objects.iter().take(MOST_OBJECTS) {
+        let determinant = object.object_to_world.matrix3.determinant();
+        let kind = match determinant {
+            _ if object.object_to_world == luminaire::glam::Affine3A::IDENTITY => "none".into(),
+            d if d < 0.0 => format!("mirrored, volume times {:.4}", -d),
+            d => format!("volume times {d:.4}"),
+        };
+        rows.push(vec![
+            object.name.clone(),
+            scene.meshes[object.mesh as usize].name.clone(),
+            object.material.map_or("of the mesh".into(), |m| scene.materials[m as usize].name.clone()),
+            kind,
+        ]);
+    }
+    if let Some(more) = scene.objects.len().checked_sub(MOST_OBJECTS + 1) {
+        rows.push(vec![format!("... and {} more", more + 1)]);
+    }
+    rows
+}
+
+/// Materials and how many triangles show them. The first one of a loaded scene is the built-in `default`, which nobody asked for:
+/// it is left out where nothing shows it, and told apart from one that a file calls so.
+pub(super) fn materials(scene: &Scene) -> Vec<Vec<String>> {
+    let mut used = vec![0u64; scene.materials.len()];
+    for object in &scene.objects {
+        for triangle in &scene.meshes[object.mesh as usize].triangles {
+            used[object.material.unwrap_or(triangle.material) as usize] += 1;
+        }
+    }
+    let head = ["name", "triangles", "lambert", "glossy", "exponent", "emission", "besides"].map(String::from).to_vec();
+    let built_in = scene.materials.first().filter(|first| first.name == "default");
+    let hidden = usize::from(built_in.is_some() && used[0] == 0);
+    let twice = scene.materials.iter().filter(|m| m.name == "default").count() > 1;
+    let rows = scene.materials.iter().zip(used).enumerate().skip(hidden).map(|(index, (m, used))| {
+        let name = if index == 0 && built_in.is_some() && twice { "default (built in)".into() } else { m.name.clone() };
+        let exponent = if m.glossy == Vec3::ZERO { "-".into() } else { m.exponent.to_string() };
+        let (lambert, glossy, emission) = (rgb(m.lambert), rgb(m.glossy), rgb(m.emission));
+        vec![name, used.to_string(), lambert, glossy, exponent, emission, besides(scene, m)]
+    });
+    std::iter::once(head).chain(rows).collect()
+}
+
+/// Impulses, opacity and maps; a dash where there are none.
+fn besides(scene: &Scene, m: &Material) -> String {
+    let mut parts = Vec::new();
+    match m.eta {
+        Some(eta) if m.transmission != Vec3::ZERO => parts.push(format!(
+            "glass of index {eta}, reflection {}, transmission {}",
+            rgb(m.reflection),
+            rgb(m.transmission)
+        )),
+        Some(eta) if m.reflection != Vec3::ZERO => {
+            parts.push(format!("mirror with Fresnel's reflectance for index {eta}, reflection {}", rgb(m.reflection)));
+        }
+        _ if m.reflection != Vec3::ZERO => parts.push(format!("mirror, reflection {}", rgb(m.reflection))),
+        _ => {}
+    }
+    if let Some(probability) = m.impulse_probability {
+        parts.push(format!("impulses taken with probability {probability}"));
+    }
+    if m.opacity < 1.0 {
+        parts.push(format!("opacity {}", m.opacity));
+    }
+    for (map, name) in [
+        (m.maps.lambert, "diffuse"),
+        (m.maps.glossy, "glossy"),
+        (m.maps.emission, "emission"),
+        (m.maps.ambient, "ambient"),
+        (m.maps.opacity, "opacity"),
+    ] {
+        if let Some(map) = map {
+            parts.push(format!("{name} map {}", scene.textures[map as usize].name));
+        }
+    }
+    if parts.is_empty() { "-".into() } else { parts.join("; ") }
+}
+
+/// Textures.
+pub(super) fn textures(scene: &Scene) -> Vec<Vec<String>> {
+    let mut rows = vec![["name", "texels", "outside", "alpha"].map(String::from).to_vec()];
+    for texture in &scene.textures {
+        let alpha = match texture.alpha_range() {
+            (1.0, _) => "opaque".into(),
+            (least, most) => format!("{least} to {most}"),
+        };
+        rows.push(vec![
+            texture.name.clone(),
+            format!("{} x {}", texture.width, texture.height),
+            if texture.clamp { "clamped" } else { "repeated" }.into(),
+            alpha,
+        ]);
+    }
+    rows
+}
+
+/// Luminaires and how often each is chosen.
+pub(super) fn luminaires(scene: &Scene) -> Vec<Vec<String>> {
+    let table = LuminaireTable::new(scene);
+    let mut rows = Vec::new();
+    let (mut triangles, mut area, mut chance) = (0u64, 0.0, 0.0);
+    let percent = |p: f64| format!("chosen {:.1} %", p * 100.0);
+    for (entry, pdf) in table.entries.iter().zip(&table.choice.pdf) {
+        match entry {
+            SampledLuminaire::Impulse(Luminaire::Point { position, intensity }) => rows.push(vec![
+                "point".into(),
+                format!("at {}", rgb(*position)),
+                format!("intensity {}", rgb(*intensity)),
+                percent(*pdf),
+            ]),
+            SampledLuminaire::Impulse(Luminaire::Infinite { direction, irradiance }) => rows.push(vec![
+                "infinite".into(),
+                format!("towards {}", rgb(*direction)),
+                format!("irradiance {}", rgb(*irradiance)),
+                percent(*pdf),
+            ]),
+            SampledLuminaire::Environment => {
+                rows.push(vec!["environment".into(), String::new(), String::new(), percent(*pdf)]);
+            }
+            SampledLuminaire::Area(triangle) => {
+                triangles += 1;
+                area += triangle.area();
+                chance += pdf;
+            }
+        }
+    }
+    if triangles > 0 {
+        let what = format!("{triangles} emissive triangles");
+        rows.push(vec!["area".into(), what, format!("total area {area:.4}"), percent(chance)]);
+    }
+    if rows.is_empty() {
+        rows.push(vec!["none: nothing in this scene emits".into()]);
+    }
+    rows
+}
+
+/// Three numbers.
+pub(super) fn rgb(v: Vec3) -> String {
+    format!("({} {} {})", v.x, v.y, v.z)
+}

@@ -1,0 +1,333 @@
+//! The window, under a virtual X server with real keys and a real pointer: what it shows is what `luminaire render` writes.
+//!
+//! It wants Xvfb, xdotool and a Vulkan device that can present; what is missing is said as SKIP, and with `LUMINAIRE_REQUIRE_GPU=1` it is a failure.
+
+#[path = "../../../tests/common/devices.rs"]
+mod common;
+
+use common::skip;
+use image::{Rgb, RgbImage};
+use luminaire::picture;
+use std::io::{BufRead, BufReader, Read};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+const CORNELL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/cornell/cornell.toml");
+
+/// Wide enough for the scale of an error map.
+const SIZE: (u32, u32) = (160, 120);
+const SPP: &str = "8";
+const PATIENCE: Duration = Duration::from_secs(30);
+
+/// A virtual display; it ends with this.
+struct Display {
+    server: Child,
+    name: String,
+    folder: tempfile::TempDir,
+}
+
+impl Display {
+    /// Starts Xvfb on a free display; none if Xvfb or xdotool is missing.
+    fn start() -> Option<Self> {
+        let there = |tool: &str| Command::new(tool).arg("-help").output().is_ok();
+        if let Some(tool) = ["Xvfb", "xdotool"].into_iter().find(|tool| !there(tool)) {
+            skip(&format!("{tool} is missing: the window was not tested (scripts/setup.sh test installs it)"));
+            return None;
+        }
+        let folder = tempfile::tempdir().unwrap();
+        let mut server = Command::new("Xvfb")
+            .args(["-displayfd", "1", "-screen", "0", "800x600x24", "-nolisten", "tcp", "-fbdir"])
+            .arg(folder.path())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        let mut line = String::new();
+        BufReader::new(server.stdout.as_mut().unwrap()).read_line(&mut line).unwrap();
+        Some(Display { server, name: format!(":{}", line.trim()), folder })
+    }
+
+    /// The screen's upper left corner: Xvfb keeps its memory in a file, in the format of xwd.
+    fn screen(&self, size: (u32, u32)) -> RgbImage {
+        let file = std::fs::read(self.folder.path().join("Xvfb_screen0")).unwrap();
+        let word = |i: usize| u32::from_be_bytes(file[4 * i..4 * i + 4].try_into().unwrap()) as usize;
+        // Size of the header, bits a pixel, bytes a line, colours (XWDFile.h).
+        let (header, bits, line, colours) = (word(0), word(11), word(12), word(19));
+        assert_eq!((bits, word(7)), (32, 0), "pixels of four bytes, blue first");
+        let start = header + 12 * colours;
+        RgbImage::from_fn(size.0, size.1, |x, y| {
+            let at = start + line * y as usize + 4 * x as usize;
+            Rgb([file[at + 2], file[at + 1], file[at]])
+        })
+    }
+
+    fn xdotool(&self, words: &str) -> String {
+        let output = Command::new("xdotool").args(words.split(' ')).env("DISPLAY", &self.name).output().unwrap();
+        assert!(output.status.success(), "xdotool {words}: {}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stdout).unwrap().trim().to_owned()
+    }
+}
+
+impl Drop for Display {
+    fn drop(&mut self) {
+        let _ = self.server.kill();
+        let _ = self.server.wait();
+    }
+}
+
+/// A `luminaire view` on a display.
+struct View<'a> {
+    display: &'a Display,
+    program: Child,
+    window: String,
+    folder: &'a Path,
+}
+
+impl<'a> View<'a> {
+    fn start(display: &'a Display, folder: &'a Path, words: &[&str]) -> Self {
+        let program = luminaire(folder, "view", words)
+            .env("DISPLAY", &display.name)
+            .env_remove("WAYLAND_DISPLAY")
+            .env_remove("WAYLAND_SOCKET")
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut view = View { display, program, window: String::new(), folder };
+        let found =
+            || Command::new("xdotool").args(["search", "--name", "luminaire"]).env("DISPLAY", &display.name).output();
+        view.until("there is a window", || {
+            let window = String::from_utf8(found().unwrap().stdout).unwrap();
+            (!window.is_empty()).then(|| window.trim().to_owned())
+        });
+        view.window = String::from_utf8(found().unwrap().stdout).unwrap().trim().to_owned();
+        display.xdotool(&format!("windowfocus {}", view.window));
+        view
+    }
+
+    /// Waits until `happens` gives something.
+    fn until<T>(&self, what: &str, happens: impl Fn() -> Option<T>) -> T {
+        let start = Instant::now();
+        loop {
+            if let Some(found) = happens() {
+                return found;
+            }
+            assert!(start.elapsed() < PATIENCE, "never came: {what}; the title is {:?}", self.title());
+            std::thread::sleep(Duration::from_millis(30));
+        }
+    }
+
+    fn title(&self) -> String {
+        self.display.xdotool(&format!("getwindowname {}", self.window))
+    }
+
+    /// Waits for a title that contains all of these words.
+    fn titled(&self, words: &[&str]) -> String {
+        self.until(&format!("a title with {words:?}"), || {
+            Some(self.title()).filter(|title| words.iter().all(|word| title.contains(word)))
+        })
+    }
+
+    /// Waits until the window shows `expected` to the last bit, as far as rows from the top go.
+    fn shows(&self, what: &str, expected: &RgbImage, rows: u32) {
+        let crop = |picture: &RgbImage| image::imageops::crop_imm(picture, 0, 0, expected.width(), rows).to_image();
+        let expected = crop(expected);
+        self.until(what, || (crop(&self.display.screen(expected.dimensions())) == expected).then_some(()));
+    }
+
+    fn key(&self, keys: &str) {
+        self.display.xdotool(&format!("key {keys}"));
+    }
+
+    fn file(&self, name: &str) -> PathBuf {
+        let path = self.folder.join(name);
+        self.until(name, || path.exists().then_some(()));
+        path
+    }
+
+    /// Ends it with Esc; what it said.
+    fn quit(mut self) -> Output {
+        self.key("Escape");
+        self.until("the end", || (!Path::new(&format!("/proc/{}/exe", self.program.id())).exists()).then_some(()));
+        let read = |stream: &mut dyn Read| {
+            let mut bytes = vec![];
+            stream.read_to_end(&mut bytes).unwrap();
+            bytes
+        };
+        Output {
+            stdout: read(self.program.stdout.as_mut().unwrap()),
+            stderr: read(self.program.stderr.as_mut().unwrap()),
+            status: self.program.wait().unwrap(),
+        }
+    }
+}
+
+impl Drop for View<'_> {
+    fn drop(&mut self) {
+        let _ = self.program.kill();
+        let _ = self.program.wait();
+    }
+}
+
+fn luminaire(folder: &Path, command: &str, words: &[&str]) -> Command {
+    let mut program = Command::new(env!("CARGO_BIN_EXE_luminaire"));
+    program.current_dir(folder).arg(command).args(words);
+    program
+}
+
+/// What `luminaire render` writes.
+fn rendered(folder: &Path, scene: &str, (width, height): (u32, u32), words: &[&str]) -> RgbImage {
+    let size = ["--width", &width.to_string(), "--height", &height.to_string()].map(str::to_owned);
+    let size: Vec<&str> = size.iter().map(String::as_str).collect();
+    let path = folder.join("rendered.png");
+    let own = [scene, "--spp", SPP, "-o", "rendered.png"];
+    let output = luminaire(folder, "render", &[&own[..], &size, words].concat()).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let picture = image::open(&path).unwrap().to_rgb8();
+    std::fs::remove_file(path).unwrap();
+    picture
+}
+
+/// Whether a device of this machine can trace: then it can present, too.
+fn vulkan_is_here() -> bool {
+    let here = luminaire::backend::devices().is_ok_and(|devices| devices.iter().any(|device| device.backend.is_ok()));
+    if !here {
+        skip("no Vulkan device is usable: the window was not tested");
+    }
+    here
+}
+
+#[test]
+fn the_window_shows_what_render_writes_and_obeys() {
+    let Some(display) = Display::start().filter(|_| vulkan_is_here()) else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let bvh = ["--backend", "compute-bvh"];
+    let words = [CORNELL, "--width", "160", "--height", "120", "--spp", SPP, bvh[0], bvh[1]];
+    let view = View::start(&display, folder, &words);
+    let start = rendered(folder, CORNELL, SIZE, &bvh);
+    view.shows("the picture of `render`", &start, SIZE.1);
+    let title = view.titled(&["8.0 samples a pixel", "Mrays/s", "error", "compute-bvh on "]);
+
+    // Another backend gives the same picture, but for rounding.
+    view.key("b");
+    view.titled(&["8.0 samples a pixel", "cpu on "]);
+    view.shows("the reference's picture", &rendered(folder, CORNELL, SIZE, &["--backend", "cpu"]), SIZE.1);
+    view.key("b");
+    // Ray query, or where there is none the first again.
+    view.until("a backend on Vulkan", || (!view.title().contains("cpu on ")).then_some(()));
+    if !title.is_empty() && !view.title().contains("compute-bvh on ") {
+        view.titled(&["8.0 samples a pixel", "ray-query on "]);
+        view.key("b");
+    }
+    view.titled(&["8.0 samples a pixel", "compute-bvh on "]);
+
+    // Another estimator, too: this one is `render`'s, sample by sample.
+    view.key("n");
+    view.titled(&["8.0 samples a pixel", ", cosine"]);
+    view.shows(
+        "the estimator cosine",
+        &rendered(folder, CORNELL, SIZE, &["--estimator", "cosine", bvh[0], bvh[1]]),
+        SIZE.1,
+    );
+    view.key("n");
+    view.key("n");
+    view.key("n");
+    view.titled(&["8.0 samples a pixel", ", default"]);
+
+    // A drag orbits; the camera that is written gives the picture that is seen.
+    display.xdotool("mousemove 60 60 mousedown 1 mousemove 90 50 mousemove 100 45 mouseup 1 key c");
+    let snippet = std::fs::read_to_string(view.file("cornell-camera-1.toml")).unwrap();
+    assert!(snippet.starts_with("[sensor]\n") && !snippet.contains("-800.0]"), "{snippet}");
+    let object = "[render]\nexposure = 1\n[[object]]\nmesh = \"cornell.obj\"\n";
+    let object = object.replace("cornell.obj", &CORNELL.replace(".toml", ".obj"));
+    std::fs::write(folder.join("turned.toml"), snippet.clone() + &object).unwrap();
+    let turned = rendered(folder, "turned.toml", SIZE, &bvh);
+    view.shows("the scene from the side", &turned, SIZE.1);
+
+    // Saved pictures are what is seen, and none replaces another.
+    view.key("p");
+    assert_eq!(image::open(view.file("cornell-view-1.png")).unwrap().to_rgb8(), turned);
+    view.key("o");
+    let exr = picture::read(&view.file("cornell-view-1.exr")).unwrap();
+    assert_eq!((exr.width, exr.height, exr.error.is_some()), (SIZE.0, SIZE.1, true));
+
+    view.key("2");
+    view.titled(&["error map", "8.0 samples a pixel"]);
+    rendered(folder, "turned.toml", SIZE, &["--error-map", "error.png", bvh[0], bvh[1]]);
+    // Once the message at the upper edge is gone; the scale covers the last 40 rows.
+    view.shows("the error map of `render`", &image::open(folder.join("error.png")).unwrap().to_rgb8(), SIZE.1 - 40);
+    view.key("p");
+    view.file("cornell-view-2.png");
+    assert_eq!(
+        std::fs::read(folder.join("cornell-view-2.png")).unwrap(),
+        std::fs::read(folder.join("error.png")).unwrap()
+    );
+
+    // The camera of the scene, another window, and the first surfaces.
+    view.key("1 Home");
+    view.shows("the first camera", &start, SIZE.1);
+    let size = (240, 100);
+    display.xdotool(&format!("windowsize {} {} {}", view.window, size.0, size.1));
+    view.shows("the resized window", &rendered(folder, CORNELL, size, &bvh), size.1);
+    let middle = |expected: [u8; 3]| {
+        let near = |found: &Rgb<u8>| found.0.iter().zip(expected).all(|(a, b)| a.abs_diff(b) < 6);
+        view.until(&format!("{expected:?} in the middle"), || {
+            near(display.screen(size).get_pixel(130, 45)).then_some(())
+        })
+    };
+    view.key("4");
+    view.titled(&["normals", "64.0 samples a pixel"]);
+    // The back wall faces the camera, which looks along +z.
+    middle([128, 128, 0]);
+    view.key("3");
+    view.titled(&["albedo", "64.0 samples a pixel"]);
+    // 0.73 in sRGB.
+    middle([222, 222, 222]);
+
+    // Hidden and shown again; then the help.
+    display.xdotool(&format!("windowunmap {0} windowmap {0} windowfocus {0}", view.window));
+    view.key("1");
+    view.shows("the picture after it was hidden", &rendered(folder, CORNELL, size, &bvh), size.1);
+    view.key("h");
+    let white = || display.screen(size).pixels().filter(|pixel| pixel.0 == [255; 3]).count();
+    view.until("the help", || (white() > 1500).then_some(()));
+
+    let output = view.quit();
+    let (out, err) = (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap());
+    assert_eq!(output.status.code(), Some(0), "{err}");
+    assert!(!err.contains("Vulkan validation") && !err.contains("error"), "{err}");
+    assert!(out.starts_with(&(snippet + "cornell-camera-1.toml\ncornell-view-1.png\n")), "{out}");
+}
+
+#[test]
+fn without_a_display() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut command = luminaire(folder.path(), "view", &[CORNELL]);
+    let output =
+        ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"].iter().fold(&mut command, |c, v| c.env_remove(v)).output();
+    let output = output.unwrap();
+    let err = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{err}");
+    assert!(err.contains("error: ") && err.contains("luminaire render") && !err.contains("panicked"), "{err}");
+}
+
+#[test]
+fn without_a_device_that_presents() {
+    let Some(display) = Display::start() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let nothing = folder.path().join("no-driver.json");
+    std::fs::write(&nothing, "").unwrap();
+    let output = luminaire(folder.path(), "view", &[CORNELL, "--backend", "cpu"])
+        .env("DISPLAY", &display.name)
+        .env_remove("WAYLAND_DISPLAY")
+        .env_remove("WAYLAND_SOCKET")
+        .env("VK_DRIVER_FILES", &nothing)
+        .env("VK_ICD_FILENAMES", &nothing)
+        .output()
+        .unwrap();
+    let err = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{err}");
+    assert!(err.contains("error: ") && err.contains("luminaire render") && !err.contains("panicked"), "{err}");
+}

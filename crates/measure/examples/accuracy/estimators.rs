@@ -1,0 +1,157 @@
+//! What each stage of the lecture buys, as error times time.
+//!
+//! Every estimator renders the same small picture in turn, several times with other samples; the error is the mean of
+//! `(a - b)^2 / (b^2 + 0.01)` over pixels and channels (relMSE), against a picture of many samples by the default estimator. Error falls
+//! as one over time, so that their product does not depend on the number of samples: half of it is twice as fast.
+
+use crate::Texts;
+use luminaire::backend::Backend;
+use luminaire::film::{Batch, Tile};
+use luminaire::render::Tracer;
+use luminaire::scene::{
+    self, AreaSampling, Directions, Estimator, Extinction, Integrator, LightSampling, PRESETS, Sampler, Scene,
+};
+use luminaire_measure::Workbench;
+use std::error::Error;
+use std::path::Path;
+use std::time::Instant;
+
+const SCENES: [&str; 3] = ["cornell", "plates", "textures"];
+const SIZE: u32 = 64;
+const SAMPLES: u32 = 16;
+
+/// Mean radiance of each pixel over some samples, the seconds it took, and the rays.
+fn picture(tracer: &mut dyn Tracer, samples: std::ops::Range<u32>) -> luminaire::Result<(Vec<[f64; 3]>, f64, u64)> {
+    let tile = Tile { x: 0, y: 0, width: SIZE, height: SIZE };
+    let mut sums = vec![[0.0; 3]; tile.pixels()];
+    let mut rays = 0;
+    let start = Instant::now();
+    // In batches that no driver takes for a hang.
+    for first in samples.clone().step_by(64) {
+        let part = first..samples.end.min(first + 64);
+        let traced = tracer.trace(&Batch { tile, samples: part, group: 16 })?;
+        for (i, sum) in traced.sums.iter().enumerate() {
+            let pixel = &mut sums[i % tile.pixels()];
+            (0..3).for_each(|c| pixel[c] += sum.radiance[c]);
+            rays += u64::from(sum.rays.all);
+        }
+    }
+    let seconds = start.elapsed().as_secs_f64();
+    let n = f64::from(samples.end - samples.start);
+    Ok((sums.into_iter().map(|p| p.map(|x| x / n)).collect(), seconds, rays))
+}
+
+fn relative_mse(found: &[[f64; 3]], expected: &[[f64; 3]]) -> f64 {
+    let pairs = found.iter().flatten().zip(expected.iter().flatten());
+    pairs.map(|(a, b)| (a - b).powi(2) / (b * b + 0.01)).sum::<f64>() / (3 * found.len()) as f64
+}
+
+/// An estimator of the table.
+struct Row {
+    name: String,
+    estimator: Estimator,
+    sampler: Sampler,
+}
+
+/// What was measured of it on one backend.
+#[derive(Default)]
+struct Found {
+    error: f64,
+    mean: f64,
+    rays: u64,
+    seconds: Vec<f64>,
+}
+
+impl Found {
+    /// Error times the median of the seconds.
+    fn product(&self) -> f64 {
+        let mut seconds = self.seconds.clone();
+        seconds.sort_by(f64::total_cmp);
+        self.error * seconds[seconds.len() / 2]
+    }
+}
+
+fn rows(scene: &Scene) -> Vec<Row> {
+    // The scene's own limit stays.
+    let max_bounces = scene.integrator.estimator().max_bounces;
+    let limit = |estimator| Estimator { max_bounces, ..estimator };
+    let row = |name: &str, estimator, sampler| Row { name: name.to_owned(), estimator: limit(estimator), sampler };
+    let default = Estimator::default();
+    let mut rows: Vec<_> =
+        PRESETS.iter().map(|(name, estimator)| row(name, *estimator, Sampler::Independent)).collect();
+    let changes = [
+        ("default", default),
+        ("default, no light sampling", Estimator { light_sampling: LightSampling::None, ..default }),
+        ("default, light sampling alone", Estimator { light_sampling: LightSampling::Direct, ..default }),
+        ("default, luminaires by area", Estimator { area_sampling: AreaSampling::Area, ..default }),
+        ("default, uniform directions", Estimator { directions: Directions::Uniform, ..default }),
+        ("default, cosine directions", Estimator { directions: Directions::Cosine, ..default }),
+        ("default, extinction by surface", Estimator { extinction: Extinction::Surface, ..default }),
+    ];
+    rows.extend(changes.map(|(name, estimator)| row(name, estimator, Sampler::Sobol)));
+    rows.push(row("default, independent numbers", default, Sampler::Independent));
+    rows
+}
+
+/// Measures every scene and estimator on every GPU backend, or on the reference if there is none.
+pub fn measure(bench: &Workbench, texts: &mut Texts) -> Result<(), Box<dyn Error>> {
+    let (rounds, reference_samples) = if bench.long { (8, 4096) } else { (3, 1024) };
+    let mut backends = bench.backends();
+    if backends.len() > 1 {
+        backends.retain(|backend| *backend != Backend::Cpu);
+    }
+    let mut table = String::from("| scene | estimator | relMSE | rays a sample | mean / reference |");
+    for backend in &backends {
+        table += &format!(" {backend}: relMSE x s | to default |");
+    }
+    table += &format!("\n|---|---|---|---|---|{}\n", "---|---|".repeat(backends.len()));
+    for name in SCENES {
+        let mut scene = scene::load(Path::new(&format!("scenes/{name}/{name}.toml")))?;
+        (scene.film.width, scene.film.height) = (SIZE, SIZE);
+        let rows = rows(&scene);
+        let default = rows.iter().position(|row| row.name == "default").ok_or("no default")?;
+        let with = |seed, row: &Row| {
+            let mut scene = scene.clone();
+            (scene.settings.seed, scene.settings.sampler) = (seed, row.sampler);
+            scene.integrator = Integrator::Path(row.estimator);
+            scene
+        };
+        let mut tracer = bench.tracer(&with(77, &rows[default]), backends[0])?;
+        let (reference, ..) = picture(tracer.as_mut(), 0..reference_samples)?;
+        let mean = |picture: &[[f64; 3]]| picture.iter().flatten().sum::<f64>();
+        let mut found: Vec<Vec<Found>> = Vec::new();
+        for &backend in &backends {
+            eprintln!("estimators: {name}, {backend}");
+            let mut tracers =
+                rows.iter().map(|row| bench.tracer(&with(1, row), backend)).collect::<luminaire::Result<Vec<_>>>()?;
+            let mut here: Vec<Found> = rows.iter().map(|_| Found::default()).collect();
+            for round in 0..=rounds {
+                for (found, tracer) in here.iter_mut().zip(&mut tracers) {
+                    let (picture, seconds, rays) = picture(tracer.as_mut(), round * SAMPLES..(round + 1) * SAMPLES)?;
+                    // The first round compiles the shader.
+                    if round > 0 {
+                        found.error += relative_mse(&picture, &reference) / f64::from(rounds);
+                        found.mean += mean(&picture) / mean(&reference) / f64::from(rounds);
+                        found.rays += rays;
+                        found.seconds.push(seconds);
+                    }
+                }
+            }
+            found.push(here);
+        }
+        for (index, row) in rows.iter().enumerate() {
+            let first = &found[0][index];
+            let rays = first.rays as f64 / f64::from(rounds * SAMPLES * SIZE * SIZE);
+            table += &format!("| {name} | {} | {:.2e} | {rays:.2} | {:.3} |", row.name, first.error, first.mean);
+            for here in &found {
+                let product = here[index].product();
+                table += &format!(" {product:.2e} | {:.2} |", product / here[default].product());
+            }
+            table += "\n";
+        }
+    }
+    texts.insert("estimators", table);
+    texts.insert("estimators-rounds", rounds.to_string());
+    texts.insert("estimators-reference", reference_samples.to_string());
+    Ok(())
+}

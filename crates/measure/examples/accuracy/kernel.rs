@@ -1,0 +1,94 @@
+//! The kernel against the reference, scene by scene: at equal random numbers, and as independent pictures.
+
+use crate::Texts;
+use luminaire::backend::Backend;
+use luminaire::scene::{self, Integrator, Sampler, Scene};
+use luminaire_measure::Workbench;
+use luminaire_measure::statistics::{Image, compare, render, sidak, total, two_sided};
+use std::error::Error;
+use std::path::Path;
+
+/// The scenes; every feature is in one of them.
+const SCENES: [&str; 8] = ["cornell", "instances", "glass", "textures", "environment", "plates", "simple", "furnace"];
+/// Samples a pixel for the comparison at equal seeds, and for the test with other seeds.
+const EQUAL: u32 = 64;
+const OTHER: u32 = 256;
+const OTHER_LONG: u32 = 1024;
+const GROUPS: u32 = 16;
+/// Width of the pictures.
+const WIDTH: u32 = 64;
+
+/// Measures every scene on every GPU backend.
+pub fn measure(bench: &Workbench, texts: &mut Texts) -> Result<(), Box<dyn Error>> {
+    let backends: Vec<Backend> = bench.backends().into_iter().filter(|backend| *backend != Backend::Cpu).collect();
+    let samples = if bench.long { OTHER_LONG } else { OTHER };
+    texts.insert("kernel-samples", samples.to_string());
+    if backends.is_empty() {
+        texts.insert("kernel", format!("Not measured: {}.", bench.device));
+        texts.insert("kernel-verdict", String::new());
+        return Ok(());
+    }
+    let picture = |scene: &Scene, backend, samples| -> luminaire::Result<Image> {
+        Ok(render(bench.tracer(scene, backend)?.as_mut(), scene.film.width, scene.film.height, samples, GROUPS))
+    };
+    let mut table = String::from(
+        "| scene | backend | one bounce: max | 99.9 % | full paths: max | 99.9 % | means: ratio | p | pixels: p |\n\
+         |---|---|---|---|---|---|---|---|---|\n",
+    );
+    let mut ps = Vec::new();
+    for name in SCENES {
+        eprintln!("kernel against reference: {name}");
+        let mut scene = scene::load(Path::new(&format!("scenes/{name}/{name}.toml")))?;
+        scene.film.height = (WIDTH * scene.film.height / scene.film.width).max(1);
+        scene.film.width = WIDTH;
+        let mut short = scene.clone();
+        if let Integrator::Path(estimator) = &mut short.integrator {
+            estimator.max_bounces = Some(1);
+        }
+        let short_reference = picture(&short, Backend::Cpu, EQUAL)?;
+        let reference = picture(&scene, Backend::Cpu, EQUAL)?;
+        // Independent numbers: successive groups of Sobol points depend on each other.
+        let mut independent = scene.clone();
+        independent.settings.sampler = Sampler::Independent;
+        let long_reference = picture(&independent, Backend::Cpu, samples)?;
+        for (index, &backend) in (1..).zip(&backends) {
+            let one = differences(&picture(&short, backend, EQUAL)?, &short_reference);
+            let full = differences(&picture(&scene, backend, EQUAL)?, &reference);
+            // Other seeds for each: independent pictures.
+            let mut other = independent.clone();
+            other.settings.seed = scene.settings.seed + index;
+            let long = picture(&other, backend, samples)?;
+            let (a, b) = (total(&long), total(&long_reference));
+            let p_mean = two_sided((a.mean - b.mean) / a.error.hypot(b.error).max(1e-7 * b.mean));
+            let p_pixels = compare(&long, &long_reference);
+            ps.extend([p_mean, p_pixels]);
+            table += &format!(
+                "| {name} | {backend} | {:.1e} | {:.1e} | {:.1e} | {:.1e} | {:.5} | {p_mean:.2} | {p_pixels:.2} |\n",
+                one[0],
+                one[1],
+                full[0],
+                full[1],
+                a.mean / b.mean,
+            );
+        }
+    }
+    let smallest = ps.iter().copied().fold(1.0, f64::min);
+    texts.insert("kernel", table);
+    let among = sidak(smallest, ps.len());
+    texts.insert(
+        "kernel-verdict",
+        format!(
+            "The smallest of these {} p is {smallest:.2}, which among so many has p = {among:.2} (Sidak).",
+            ps.len()
+        ),
+    );
+    Ok(())
+}
+
+/// Largest and 99.9th-percentile difference of a pixel's channel, relative to the mean of the picture.
+fn differences(a: &Image, b: &Image) -> [f64; 2] {
+    let mut all: Vec<f64> = a.mean.iter().flatten().zip(b.mean.iter().flatten()).map(|(a, b)| (a - b).abs()).collect();
+    all.sort_by(f64::total_cmp);
+    let last = all.len() - 1;
+    [all[last], all[last - all.len() / 1000]].map(|d| d / total(b).mean)
+}

@@ -1,0 +1,333 @@
+//! Very many luminaires, instances and bounces: what they cost, and what they do to the error.
+
+use super::rooms::{furnace, without_roulette};
+use super::trial::Trial;
+use super::words::{count, largest, share};
+use super::{Definition, Findings, Sweep};
+use crate::Workbench;
+use crate::chart::{Axis, Chart, Point, Series};
+use glam::{Affine3A, Vec3};
+use luminaire::Result;
+use luminaire::backend::Backend;
+use luminaire::render::Tracer;
+use luminaire::scene::build::*;
+use luminaire::scene::{
+    Environment, Estimator, FilmSettings, Integrator, LightSampling, Mesh, Projection, Scene, Sensor, Triangle,
+};
+
+/// The sweep over numbers of things.
+pub const DEFINITION: Definition =
+    Definition { name: "many", title: "luminaires, instances and bounces, 1 to 1e5 of each", run };
+
+struct Steps {
+    numbers: Vec<u32>,
+    /// Seconds of one timing, of which there are [`ROUNDS`] for each number.
+    seconds: f64,
+    /// Samples a pixel of what tells the noise.
+    samples: u32,
+}
+
+/// Timings of each number, in turn with the smallest; their least counts.
+const ROUNDS: usize = 4;
+const SIZE: (u32, u32) = (16, 16);
+
+fn run(bench: &Workbench) -> Result<Sweep> {
+    let steps = match bench.long {
+        false => Steps { numbers: vec![1, 10, 100, 1000, 10_000, 100_000], seconds: 0.03, samples: 512 },
+        true => Steps {
+            numbers: (0..=20).map(|i| 10f64.powf(0.25 * f64::from(i)).round() as u32).collect(),
+            seconds: 0.15,
+            samples: 8192,
+        },
+    };
+    sweep(bench, &steps)
+}
+
+/// A street without end: a floor of `n` squares with a small lamp one unit above the middle of each, of which the picture shows one.
+/// Direct light only.
+fn city(n: u32, light_sampling: LightSampling) -> Scene {
+    let mut scene = empty(SIZE.0, SIZE.1);
+    let side = f64::from(n).sqrt().ceil() as u32;
+    let middle = (side / 2) as f32 + 0.5;
+    scene.sensor = Sensor {
+        position: Vec3::new(middle, 0.9, middle),
+        target: Vec3::new(middle, 0.0, middle),
+        up: Vec3::Z,
+        projection: Projection::Orthographic { height: 1.0 },
+        lens: None,
+    };
+    let floor = quad(Vec3::new(0.0, 0.0, side as f32), Vec3::X * side as f32, Vec3::Z * -(side as f32));
+    add(&mut scene, floor, matte(Vec3::splat(0.5)), Affine3A::IDENTITY);
+    let mut lamps = Mesh { name: "lamps".into(), ..Mesh::default() };
+    // The square that is seen has the first lamp, the others follow in rows.
+    let places = (0..side * side).map(|i| (i + (side / 2) * (side + 1)) % (side * side)).take(n as usize);
+    for place in places {
+        let corner = Vec3::new((place % side) as f32 + 0.45, 1.0, (place / side) as f32 + 0.45);
+        let first = lamps.positions.len() as u32;
+        lamps.positions.extend([Vec3::ZERO, Vec3::X, Vec3::Z].map(|v| corner + 0.1 * v));
+        lamps.triangles.push(Triangle { vertices: [first, first + 1, first + 2], material: 0 });
+    }
+    add(&mut scene, lamps, lamp(Vec3::splat(100.0)), Affine3A::IDENTITY);
+    scene.integrator = Integrator::Path(Estimator { light_sampling, max_bounces: Some(0), ..Estimator::default() });
+    scene
+}
+
+/// `n` spheres of 80 triangles that fill the picture, in white light.
+fn crowd(n: u32) -> Scene {
+    let mut scene = empty(SIZE.0, SIZE.1);
+    let side = f64::from(n).sqrt().ceil() as u32;
+    scene.sensor.position = Vec3::new(0.0, 0.0, 1.5);
+    let radius = 0.5 / side as f32;
+    for i in 0..n {
+        let place = |i: u32| (2 * i + 1) as f32 * radius - 0.5;
+        let map = Affine3A::from_translation(Vec3::new(place(i % side), place(i / side), 0.0))
+            * Affine3A::from_scale(Vec3::splat(radius));
+        if i == 0 {
+            add(&mut scene, icosphere(1), matte(Vec3::splat(0.5)), map);
+        } else {
+            let mut object = scene.objects[0].clone();
+            object.object_to_world = map;
+            scene.objects.push(object);
+        }
+    }
+    scene.environment = Some(Environment { radiance: Vec3::ONE, image: None, rotation: 0.0 });
+    scene.integrator =
+        Integrator::Path(Estimator { light_sampling: LightSampling::None, max_bounces: Some(2), ..without_roulette() });
+    scene
+}
+
+/// A closed room whose paths have `n` bounces, by an albedo at which the last one still has more than a third of the light.
+fn long_paths(n: u32) -> (Scene, f64) {
+    let albedo = (1.0 - 1.0 / f64::from(n + 1)) as f32;
+    let scene = furnace((8, 1), albedo, Estimator { max_bounces: Some(n), ..without_roulette() });
+    let a = f64::from(albedo);
+    (scene, (1.0 - a.powf(f64::from(n) + 2.0)) / (1.0 - a))
+}
+
+fn film(scene: &Scene) -> (u32, u32) {
+    let FilmSettings { width, height, .. } = scene.film;
+    (width, height)
+}
+
+/// How much longer a ray takes in `scene` than in `smallest`, timed in turn, and the tracer of `scene` with the bytes it holds.
+struct Compared {
+    ratio: f64,
+    bytes: Option<f64>,
+    tracer: Box<dyn Tracer>,
+}
+
+/// A tracer that is warm, and how many samples take it long enough to be timed.
+fn timed(tracer: &mut dyn Tracer, size: (u32, u32), rays: f64, seconds: f64) -> Result<u32> {
+    // The first run compiles the kernel. Two samples at least, so that two cores have work.
+    Trial::new(tracer, size, 1, rays)?;
+    let mut samples = 2;
+    while Trial::new(tracer, size, samples, rays)?.seconds < seconds && samples < 4096 {
+        samples *= 2;
+    }
+    Ok(samples)
+}
+
+fn compare(
+    bench: &Workbench,
+    backend: Backend,
+    (smallest, scene): (&Scene, &Scene),
+    rays: [f64; 2],
+    seconds: f64,
+) -> Result<Compared> {
+    let mut small = bench.tracer(smallest, backend)?;
+    let before = bench.allocated_bytes(backend);
+    let mut tracer = bench.tracer(scene, backend)?;
+    let bytes = before.zip(bench.allocated_bytes(backend)).map(|(before, after)| (after - before) as f64);
+    let size = film(scene);
+    let counts = [timed(small.as_mut(), size, rays[0], seconds)?, timed(tracer.as_mut(), size, rays[1], seconds)?];
+    let mut least = [f64::INFINITY; 2];
+    for _ in 0..ROUNDS {
+        for (which, tracer) in [&mut small, &mut tracer].into_iter().enumerate() {
+            let trial = Trial::new(tracer.as_mut(), size, counts[which], rays[which])?;
+            least[which] = least[which].min(trial.seconds_a_ray());
+        }
+    }
+    Ok(Compared { ratio: least[1] / least[0], bytes, tracer })
+}
+
+/// The series of one backend over the numbers.
+struct Lines {
+    time: Series,
+    bytes: Series,
+}
+
+fn lines(backend: Backend) -> Lines {
+    let empty = || Series { name: backend.to_string(), points: vec![] };
+    Lines { time: empty(), bytes: empty() }
+}
+
+fn sweep(bench: &Workbench, steps: &Steps) -> Result<Sweep> {
+    let chart = |name: &str, title: &str, x: &str, y: Axis| Chart {
+        name: name.into(),
+        title: title.into(),
+        x: Axis::log(x),
+        y,
+        series: vec![],
+    };
+    let ratio = || Axis::log("time a ray / that with one");
+    let mut light_time = chart("luminaires-time", "Time a ray under many lamps", "lamps", ratio());
+    let mut object_time = chart("instances-time", "Time a ray among many spheres", "instances", ratio());
+    let mut bounce_time = chart("bounces-time", "Time a ray on long paths", "bounces", ratio());
+    let mut memory =
+        chart("memory", "Memory of the device", "lamps or instances", Axis::log("bytes, without those of one"));
+    let mut noise = chart(
+        "noise",
+        "A street of lamps: noise of its direct light",
+        "lamps",
+        Axis::log("relative standard deviation of a sample"),
+    );
+    let mut drift = chart(
+        "bounces-error",
+        "A closed room whose paths have n bounces",
+        "bounces",
+        Axis::log("relative error of the mean"),
+    );
+
+    for backend in bench.backends() {
+        let one = |y: f64, n: u32| Point { x: f64::from(n), y, error: None };
+        let (mut lights, mut objects, mut bounces) = (lines(backend), lines(backend), lines(backend));
+        let series = |name: String| Series { name, points: vec![] };
+        let mut noises =
+            [series(format!("both, weighted ({backend})")), series(format!("direct light alone ({backend})"))];
+        let mut errors = series(backend.to_string());
+        let smallest = (city(1, LightSampling::Mis), crowd(1), long_paths(1).0);
+        let mut least: [Option<f64>; 2] = [None; 2];
+        for &n in &steps.numbers {
+            let scene = city(n, LightSampling::Mis);
+            let mut compared = compare(bench, backend, (&smallest.0, &scene), [3.0; 2], steps.seconds)?;
+            lights.time.points.push(one(compared.ratio, n));
+            let mut add_bytes = |bytes: Option<f64>, which: usize, line: &mut Series| {
+                if let Some(bytes) = bytes {
+                    let base = *least[which].get_or_insert(bytes);
+                    line.points.extend((n > 1).then(|| one(bytes - base, n)));
+                }
+            };
+            add_bytes(compared.bytes, 0, &mut lights.bytes);
+            let deviation = |tracer: &mut dyn Tracer| -> Result<Point> {
+                let trial = Trial::new(tracer, SIZE, steps.samples, 3.0)?;
+                Ok(one(trial.variance().sqrt() / trial.mean().mean, n))
+            };
+            noises[0].points.push(deviation(compared.tracer.as_mut())?);
+            let mut direct = bench.tracer(&city(n, LightSampling::Direct), backend)?;
+            noises[1].points.push(deviation(direct.as_mut())?);
+
+            let compared = compare(bench, backend, (&smallest.1, &crowd(n)), [3.0; 2], steps.seconds)?;
+            objects.time.points.push(one(compared.ratio, n));
+            add_bytes(compared.bytes, 1, &mut objects.bytes);
+
+            let (scene, truth) = long_paths(n);
+            let rays = [3.0, f64::from(n) + 2.0];
+            let mut compared = compare(bench, backend, (&smallest.2, &scene), rays, steps.seconds)?;
+            bounces.time.points.push(one(compared.ratio, n));
+            // The reference needs no more: without rounding all of its paths are the same.
+            let samples = if rays[1] > 1e4 { 1 } else { 4 };
+            let mean = Trial::new(compared.tracer.as_mut(), film(&scene), samples, rays[1])?.mean().mean;
+            errors.points.push(one((mean / truth - 1.0).abs(), n));
+        }
+        light_time.series.push(lights.time);
+        object_time.series.push(objects.time);
+        bounce_time.series.push(bounces.time);
+        if backend != Backend::Cpu {
+            lights.bytes.name = format!("lamps ({backend})");
+            objects.bytes.name = format!("instances ({backend})");
+            memory.series.extend([lights.bytes, objects.bytes]);
+        }
+        noise.series.extend(noises);
+        drift.series.push(errors);
+    }
+    let findings = findings(steps, [&light_time, &object_time, &bounce_time, &memory, &noise, &drift]);
+    let mut charts = vec![light_time, object_time, bounce_time, memory, noise, drift];
+    charts.retain(|chart| !chart.series.is_empty());
+    Ok(Sweep { charts, findings })
+}
+
+fn findings(steps: &Steps, [lights, objects, bounces, memory, noise, drift]: [&Chart; 6]) -> Findings {
+    let last = |series: &Series| series.points.last().map_or(f64::NAN, |p| p.y);
+    let each = |chart: &Chart, say: &dyn Fn(f64) -> String| {
+        let parts: Vec<_> = chart.series.iter().map(|s| format!("{} {}", s.name, say(last(s)))).collect();
+        parts.join(", ")
+    };
+    let times = |chart: &Chart| each(chart, &|y| format!("{y:.1}"));
+    let most = count(f64::from(steps.numbers.last().copied().unwrap_or(0)));
+    // Without a GPU there is only the reference.
+    let of_last = noise.series.len() - 2;
+    let (both, direct) = (&noise.series[of_last], &noise.series[of_last + 1]);
+    // One lamp leaves no choice; the first number that does is what the others are held against.
+    let few = steps.numbers.get(1).copied().unwrap_or(1);
+    let first = |series: &Series| series.points.get(1).map_or(f64::NAN, |p| p.y);
+    let bytes = match memory.series.is_empty() {
+        true => "no device to ask".into(),
+        false => each(memory, &|y| format!("{:.0} bytes", y / f64::from(*steps.numbers.last().unwrap_or(&1)))),
+    };
+    Findings {
+        starts: format!(
+            "Noise: with direct light alone the deviation of a sample grows from {:.2} with {few} lamps to {:.1} with {most}; with both \
+             ways weighted from {:.2} to {:.1}. \
+             Error of the mean at {most} bounces: {}.",
+            first(direct),
+            last(direct),
+            first(both),
+            last(both),
+            each(drift, &share),
+        ),
+        how: format!(
+            "One lamp is chosen by its power, not by its distance: of {most} lamps a point on the floor is lit by a few, which are \
+             hardly ever chosen (so rarely at last that the measured deviation of direct light alone is itself too small). Trees make the time grow with the \
+             logarithm of the number, and then with what no longer fits the caches; a ray takes, against one thing alone: {most} lamps \
+             {}; {most} instances {}; {most} bounces {}. Memory grows in proportion (a thing: {bytes}). Long paths multiply as many \
+             rounded \
+             numbers as they have bounces and add as many to a sum (at most {} off).",
+            times(lights),
+            times(objects),
+            times(bounces),
+            share(drift.series.iter().map(largest).fold(0.0, f64::max)),
+        ),
+        mends: "Choosing among lamps costs the same for any number (alias table). A direction from the surface finds near lamps that \
+        the choice misses, and multiple importance \
+                sampling keeps the better of both. There is no choice by place (light tree) yet. What a device cannot hold is refused \
+                by name and size before the render."
+            .into(),
+        sees: format!(
+            "More noise with more lamps of equal power far apart: to look alike, {most} lamps need {:.0} times the samples of {few} \
+             ({:.0} times with `--light-sampling direct`). \
+             Time and memory grow gently; no picture becomes wrong.",
+            (last(both) / first(both)).powi(2),
+            (last(direct) / first(direct)).powi(2),
+        ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Many lamps do not change what is right, long paths lose next to nothing, and choosing both ways is never noisier.
+    #[test]
+    fn many_things_stay_right() {
+        let bench = Workbench::new(false).unwrap();
+        for backend in bench.backends() {
+            let mean = |scene: &Scene, samples: u32, rays: f64| {
+                let mut tracer = bench.tracer(scene, backend).unwrap();
+                Trial::new(tracer.as_mut(), film(scene), samples, rays).unwrap()
+            };
+            let lamps = [LightSampling::Mis, LightSampling::Direct].map(|way| mean(&city(100, way), 1024, 3.0));
+            let [both, direct] = [&lamps[0], &lamps[1]].map(Trial::mean);
+            assert!(both.error < 0.05 * both.mean && direct.error < 0.05 * both.mean, "{both:?} {direct:?}");
+            assert!((both.mean - direct.mean).abs() < 4.0 * both.error.hypot(direct.error), "{both:?} {direct:?}");
+            assert!(lamps[0].variance() < lamps[1].variance());
+            for n in [1, 1000] {
+                let (scene, truth) = long_paths(n);
+                let found = mean(&scene, 1, f64::from(n)).mean().mean;
+                assert!((found / truth - 1.0).abs() < 1e-5, "{backend}, {n} bounces: {found} instead of {truth}");
+            }
+            // Half of the white light, and half of that, by spheres that see little of each other.
+            let crowded = mean(&crowd(1000), 4, 3.0).mean().mean;
+            assert!((0.3..0.9).contains(&crowded), "{backend}: {crowded}");
+        }
+    }
+}

@@ -1,0 +1,263 @@
+//! Moving a sensor as programs for modelling do: it orbits around its target, pans, dollies, flies; and writing it down.
+
+use glam::{DQuat, DVec2, DVec3};
+use luminaire::scene::{Projection, Scene, Sensor};
+use std::f64::consts::PI;
+
+/// The line of sight stays so far from straight up and down, in radians.
+const POLE: f64 = 0.01;
+/// No target is nearer than this part of the largest coordinate: `f32` must keep it distinct from the eye point.
+const NEAREST: f64 = 1e-5;
+/// No coordinate is larger: squares of such must stay far from the end of `f32`.
+const FARTHEST: f64 = 1e15;
+
+/// The axes of a sensor's picture.
+struct Axes {
+    /// Unit line of sight.
+    forward: DVec3,
+    right: DVec3,
+    up: DVec3,
+    /// From the eye point to the target.
+    distance: f64,
+}
+
+impl Axes {
+    fn of(sensor: &Sensor) -> Self {
+        let view = sensor.target.as_dvec3() - sensor.position.as_dvec3();
+        let forward = view.normalize();
+        let right = forward.cross(sensor.up.as_dvec3()).normalize();
+        Axes { forward, right, up: right.cross(forward), distance: view.length() }
+    }
+
+    /// The line of sight turned by `angles` to the right and upwards, in radians, about the sensor's own up; it never tips over.
+    fn turned(&self, up: DVec3, angles: DVec2) -> DVec3 {
+        let from_up = self.forward.angle_between(up);
+        let upwards = (from_up - angles.y).clamp(POLE, PI - POLE) - from_up;
+        let tilted = DQuat::from_axis_angle(self.right, -upwards) * self.forward;
+        (DQuat::from_axis_angle(up, -angles.x) * tilted).normalize()
+    }
+}
+
+/// A sensor with another eye point and target; as it was if single precision could not tell the two apart, or they would be too far away.
+fn placed(sensor: &Sensor, position: DVec3, target: DVec3) -> Sensor {
+    let reach = position.abs().max(target.abs()).max_element();
+    let nearest = (NEAREST * reach).max(f64::from(f32::MIN_POSITIVE));
+    // Also false for what is not a number.
+    if reach <= FARTHEST && position.distance(target) > nearest {
+        Sensor { position: position.as_vec3(), target: target.as_vec3(), ..sensor.clone() }
+    } else {
+        sensor.clone()
+    }
+}
+
+/// Moves the eye point around the target: a pointer that goes `angles` radians to the right and down turns the scene along.
+pub fn orbit(sensor: &Sensor, angles: DVec2) -> Sensor {
+    let axes = Axes::of(sensor);
+    let forward = axes.turned(sensor.up.as_dvec3().normalize(), DVec2::new(angles.x, -angles.y));
+    let target = sensor.target.as_dvec3();
+    placed(sensor, target - forward * axes.distance, target)
+}
+
+/// Turns the line of sight about the eye point, `angles` radians to the right and down.
+pub fn look(sensor: &Sensor, angles: DVec2) -> Sensor {
+    let axes = Axes::of(sensor);
+    let forward = axes.turned(sensor.up.as_dvec3().normalize(), DVec2::new(angles.x, -angles.y));
+    let position = sensor.position.as_dvec3();
+    placed(sensor, position, position + forward * axes.distance)
+}
+
+/// Moves eye point and target so that what is at the target's distance follows a pointer; `by` is to the right and down, in heights of the
+/// picture.
+pub fn pan(sensor: &Sensor, by: DVec2) -> Sensor {
+    let axes = Axes::of(sensor);
+    let height = match sensor.projection {
+        Projection::Perspective { fov } => 2.0 * axes.distance * (f64::from(fov).to_radians() / 2.0).tan(),
+        Projection::Orthographic { height } => f64::from(height),
+    };
+    let shift = height * (axes.up * by.y - axes.right * by.x);
+    placed(sensor, sensor.position.as_dvec3() + shift, sensor.target.as_dvec3() + shift)
+}
+
+/// Brings the eye point `factor` times as far from the target; parallel rays show that much more instead.
+pub fn dolly(sensor: &Sensor, factor: f64) -> Sensor {
+    let axes = Axes::of(sensor);
+    let target = sensor.target.as_dvec3();
+    let mut moved = placed(sensor, target - axes.forward * axes.distance * factor, target);
+    if let Projection::Orthographic { height } = sensor.projection {
+        let scaled = (f64::from(height) * factor) as f32;
+        let height = if scaled.is_normal() { scaled } else { height };
+        moved.projection = Projection::Orthographic { height };
+    }
+    moved
+}
+
+/// Moves eye point and target `by` to the right, up (the sensor's own) and forward, in the scene's unit.
+pub fn fly(sensor: &Sensor, by: DVec3) -> Sensor {
+    let axes = Axes::of(sensor);
+    let shift = axes.right * by.x + sensor.up.as_dvec3().normalize() * by.y + axes.forward * by.z;
+    placed(sensor, sensor.position.as_dvec3() + shift, sensor.target.as_dvec3() + shift)
+}
+
+/// A ball around the scene.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ball {
+    pub center: DVec3,
+    /// Never 0.
+    pub radius: f64,
+}
+
+impl Ball {
+    /// The ball around the scene's box.
+    pub fn around(scene: &Scene) -> Self {
+        let (low, high) = scene.world_bounds();
+        let reach = low.abs().max(high.abs()).max_element();
+        Ball { center: 0.5 * (low + high), radius: (0.5 * low.distance(high)).max(NEAREST * reach) }
+    }
+}
+
+/// Brings all of a ball into a picture of `aspect` (width over height), without turning.
+pub fn frame(sensor: &Sensor, ball: Ball, aspect: f64) -> Sensor {
+    let Ball { center, radius } = ball;
+    let forward = Axes::of(sensor).forward;
+    match sensor.projection {
+        Projection::Perspective { fov } => {
+            let half_height = f64::from(fov).to_radians() / 2.0;
+            let half_width = (half_height.tan() * aspect).atan();
+            placed(sensor, center - forward * (radius / half_height.min(half_width).sin()), center)
+        }
+        Projection::Orthographic { .. } => {
+            let mut framed = placed(sensor, center - forward * 2.0 * radius, center);
+            framed.projection = Projection::Orthographic { height: (2.0 * radius / aspect.min(1.0)) as f32 };
+            framed
+        }
+    }
+}
+
+/// The `[sensor]` table of a scene file for a sensor; read back, it is the same to the last bit.
+pub fn to_toml(sensor: &Sensor) -> String {
+    // The shortest digits that stand for this number alone.
+    let vector = |v: glam::Vec3| format!("[{:?}, {:?}, {:?}]", v.x, v.y, v.z);
+    let (kind, extent) = match sensor.projection {
+        Projection::Perspective { fov } => ("perspective", format!("fov = {fov:?}")),
+        Projection::Orthographic { height } => ("orthographic", format!("height = {height:?}")),
+    };
+    let mut text = format!(
+        "[sensor]\nkind = \"{kind}\"\nposition = {}\ntarget = {}\nup = {}\n{extent}\n",
+        vector(sensor.position),
+        vector(sensor.target),
+        vector(sensor.up)
+    );
+    if let Some(lens) = sensor.lens {
+        text += &format!("aperture = {:?}\nfocus_distance = {:?}\n", lens.radius, lens.focus_distance);
+        if lens.blades > 0 {
+            text += &format!("blades = {}\nblade_rotation = {:?}\n", lens.blades, lens.rotation);
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+    use luminaire::scene::{Lens, load};
+
+    fn sensor() -> Sensor {
+        Sensor {
+            position: Vec3::new(0.0, 1.0, 5.0),
+            target: Vec3::new(0.0, 1.0, 0.0),
+            up: Vec3::Y,
+            projection: Projection::Perspective { fov: 90.0 },
+            lens: None,
+        }
+    }
+
+    fn near(found: Vec3, expected: [f32; 3]) {
+        assert!(found.distance(expected.into()) < 1e-5, "{found} for {expected:?}");
+    }
+
+    #[test]
+    fn a_pointer_to_the_right_turns_the_scene_to_the_right() {
+        // A quarter turn: the camera goes to the left side of the scene, which then faces it.
+        let turned = orbit(&sensor(), DVec2::new(PI / 2.0, 0.0));
+        near(turned.position, [-5.0, 1.0, 0.0]);
+        near(turned.target, [0.0, 1.0, 0.0]);
+        // A pointer that goes down shows the scene from above.
+        let above = orbit(&sensor(), DVec2::new(0.0, PI / 4.0));
+        near(above.position, [0.0, 1.0 + 12.5f32.sqrt(), 12.5f32.sqrt()]);
+        // It never tips over.
+        for pitch in [10.0, -10.0] {
+            let pole = orbit(&sensor(), DVec2::new(0.3, pitch));
+            let line = (pole.target - pole.position).normalize();
+            assert!(line.y.abs() < 1.0 - 1e-5 && line.y.abs() > 0.999, "{line}");
+        }
+    }
+
+    #[test]
+    fn looking_panning_and_dollying_go_where_the_pointer_goes() {
+        near(look(&sensor(), DVec2::new(PI / 2.0, 0.0)).target, [5.0, 1.0, 5.0]);
+        assert!(look(&sensor(), DVec2::new(0.0, 0.1)).target.y < 1.0);
+        // The whole height of the picture is 10 at the target.
+        let panned = pan(&sensor(), DVec2::new(0.1, 0.0));
+        near(panned.position, [-1.0, 1.0, 5.0]);
+        near(pan(&sensor(), DVec2::new(0.0, 0.1)).target, [0.0, 2.0, 0.0]);
+        near(dolly(&sensor(), 0.5).position, [0.0, 1.0, 2.5]);
+        near(fly(&sensor(), DVec3::new(1.0, 2.0, 3.0)).position, [1.0, 3.0, 2.0]);
+    }
+
+    #[test]
+    fn no_movement_makes_a_sensor_that_cannot_be_rendered() {
+        let mut moved = sensor();
+        (0..1000).for_each(|_| moved = dolly(&moved, 0.5));
+        assert!(moved.position.distance(moved.target) > 0.0, "{moved:?}");
+        (0..1000).for_each(|_| moved = dolly(&moved, 2.0));
+        assert!(moved.position.is_finite() && moved.target.is_finite(), "{moved:?}");
+        moved.projection = Projection::Orthographic { height: 3.0 };
+        (0..1000).for_each(|_| moved = dolly(&moved, 0.5));
+        assert!(matches!(moved.projection, Projection::Orthographic { height } if height > 0.0), "{moved:?}");
+    }
+
+    #[test]
+    fn a_written_camera_is_read_back_to_the_last_bit() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("a.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+        let lens = Lens { radius: 0.1, focus_distance: 3.3, blades: 5, rotation: 12.7 };
+        let moved = orbit(&sensor(), DVec2::new(0.123, 0.456));
+        for sensor in [
+            moved.clone(),
+            Sensor { lens: Some(lens), ..moved.clone() },
+            Sensor { lens: Some(Lens { blades: 0, rotation: 0.0, ..lens }), ..moved.clone() },
+            Sensor { projection: Projection::Orthographic { height: 1e-7 / 3.0 }, ..moved },
+        ] {
+            let path = folder.path().join("a.toml");
+            std::fs::write(&path, to_toml(&sensor) + "[[object]]\nmesh = \"a.obj\"\n").unwrap();
+            assert_eq!(load(&path).unwrap().sensor, sensor);
+        }
+    }
+
+    #[test]
+    fn a_framed_scene_is_in_the_picture() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.obj");
+        std::fs::write(&path, "v 10 0 0\nv 11 0 0\nv 10 1 0\nf 1 2 3\n").unwrap();
+        let scene = load(&path).unwrap();
+        for aspect in [0.5, 2.0] {
+            for projection in [Projection::Perspective { fov: 30.0 }, Projection::Orthographic { height: 1.0 }] {
+                let framed = frame(&Sensor { projection, ..sensor() }, Ball::around(&scene), aspect);
+                let axes = Axes::of(&framed);
+                for point in [DVec3::new(10.0, 0.0, 0.0), DVec3::new(11.0, 0.0, 0.0), DVec3::new(10.0, 1.0, 0.0)] {
+                    let to = point - framed.position.as_dvec3();
+                    let half = match framed.projection {
+                        Projection::Perspective { fov } => {
+                            to.dot(axes.forward) * (f64::from(fov).to_radians() / 2.0).tan()
+                        }
+                        Projection::Orthographic { height } => f64::from(height) / 2.0,
+                    };
+                    assert!(
+                        to.dot(axes.up).abs() <= half * 1.0001 && to.dot(axes.right).abs() <= half * aspect * 1.0001
+                    );
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! Files on disk: whole or absent.
+//!
+//! Every file is written beside its final place and renamed, so that nobody ever sees half of one.
+
+use crate::{Error, Result};
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// Checks that a file can be created at `path` or replaced there.
+///
+/// # Errors
+/// [`Error::Write`] if the folder is missing or not writable, or `path` is itself a folder.
+pub fn check_writable(path: &Path) -> Result<()> {
+    let folder = folder_of(path);
+    if path.is_dir() {
+        return Err(Error::write(path, "it is a folder; give a file name"));
+    }
+    if !folder.is_dir() {
+        return Err(Error::write(path, format!("the folder {} does not exist; create it first", folder.display())));
+    }
+    if path.as_os_str().as_encoded_bytes().last().is_some_and(|b| std::path::is_separator(char::from(*b))) {
+        return Err(Error::write(path, "it is the name of a folder; give a file name"));
+    }
+    // A rename would replace what somebody has protected.
+    if std::fs::metadata(path).is_ok_and(|about| about.permissions().readonly()) {
+        return Err(Error::write(path, "it is read-only; make it writable, or give another name"));
+    }
+    // Permission bits do not tell about read-only file systems, so one is really created (and removed).
+    create_beside(path).map(drop)
+}
+
+/// Writes `text` to `path`.
+///
+/// # Errors
+/// [`Error::Write`] if the system refuses; then nothing has changed at `path`.
+pub fn save_text(path: &Path, text: &str) -> Result<()> {
+    write_atomically(path, |out| out.write_all(text.as_bytes()))
+}
+
+/// Whether two names lead to one file, or would once it is written.
+pub fn same_file(a: &Path, b: &Path) -> bool {
+    let place = |path: &Path| {
+        // A link leads elsewhere only if there is something.
+        std::fs::canonicalize(path)
+            .ok()
+            .or_else(|| Some(std::fs::canonicalize(folder_of(path)).ok()?.join(path.file_name()?)))
+    };
+    a == b || place(a).is_some_and(|a| Some(a) == place(b))
+}
+
+/// The folder in which `path` lies.
+fn folder_of(path: &Path) -> PathBuf {
+    match path.parent() {
+        Some(parent) if parent.as_os_str().is_empty() => PathBuf::from("."),
+        Some(parent) => parent.to_owned(),
+        None => PathBuf::from("/"),
+    }
+}
+
+/// How the names of the files end that are renamed once they are complete.
+const TEMPORARY_SUFFIX: &str = ".luminaire.tmp";
+
+/// How the names of those begin that are to become `path`. Short enough for a file system where the name itself is.
+fn temporary_prefix(path: &Path) -> String {
+    let name: String = path.file_name().unwrap_or_default().to_string_lossy().chars().take(40).collect();
+    format!(".{name}.")
+}
+
+/// Removes what a process left that was killed while it wrote `path`.
+pub fn remove_left_over(path: &Path) {
+    let prefix = temporary_prefix(path);
+    let Ok(entries) = std::fs::read_dir(folder_of(path)) else { return };
+    for entry in entries.flatten() {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        // What remains in the middle is the random part: without it, other files of similar names would match.
+        let middle = name.strip_prefix(&prefix).and_then(|rest| rest.strip_suffix(TEMPORARY_SUFFIX));
+        if middle.is_some_and(|middle| middle.len() == 6 && middle.chars().all(char::is_alphanumeric)) {
+            // Nobody waits for it: if it stays, it only takes room.
+            let _ = std::fs::remove_file(entry.path());
+        }
+    }
+}
+
+/// A new file in the folder of `path`, removed when dropped.
+fn create_beside(path: &Path) -> Result<tempfile::NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    let prefix = temporary_prefix(path);
+    builder.prefix(&prefix).suffix(TEMPORARY_SUFFIX);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // What any new file gets, less the umask; a temporary file would be its owner's alone.
+        builder.permissions(std::fs::Permissions::from_mode(0o666));
+    }
+    builder
+        .tempfile_in(folder_of(path))
+        .map_err(|e| Error::write(path, format!("the folder {} cannot be written to ({e})", folder_of(path).display())))
+}
+
+/// Lets `fill` write a temporary file, and moves that to `path` once it is complete on the disk.
+pub(crate) fn write_atomically<E: ToString>(
+    path: &Path,
+    fill: impl FnOnce(&mut dyn Write) -> std::result::Result<(), E>,
+) -> Result<()> {
+    let file = create_beside(path)?;
+    let mut out = BufWriter::new(file);
+    fill(&mut out).map_err(|e| Error::write(path, e))?;
+    let file = out.into_inner().map_err(|e| Error::write(path, e.error()))?;
+    file.as_file().sync_all().map_err(|e| Error::write(path, e))?;
+    file.persist(path).map_err(|e| Error::write(path, e.error))?;
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_failed_write_leaves_what_was_there() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.json");
+        save_text(&path, "old").unwrap();
+        let failed = write_atomically(&path, |out| {
+            out.write_all(b"half").unwrap();
+            Err("the disk is full")
+        });
+        assert!(failed.unwrap_err().to_string().contains("the disk is full"));
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "old");
+        save_text(&path, "new").unwrap();
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "new");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn files_get_ordinary_permissions() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let (ours, plain) = (folder.path().join("a.json"), folder.path().join("b"));
+        save_text(&ours, "x").unwrap();
+        std::fs::write(&plain, "x").unwrap();
+        let mode = |p: &Path| p.metadata().unwrap().permissions().mode();
+        assert_eq!(mode(&ours), mode(&plain));
+    }
+}

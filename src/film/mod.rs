@@ -1,0 +1,348 @@
+//! The film: what a tracer measured, added up.
+
+mod aov;
+mod error;
+mod output;
+
+pub use aov::{AovSum, Aovs};
+pub use error::{ErrorEstimate, ErrorMap, INTERVAL_95, REL_MSE_FLOOR};
+
+use crate::sampling::PARTS;
+use crate::{Error, Result};
+use std::collections::BTreeMap;
+use std::iter::StepBy;
+use std::ops::Range;
+
+/// A rectangle of pixels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Tile {
+    /// Left column.
+    pub x: u32,
+    /// Top row.
+    pub y: u32,
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+}
+
+impl Tile {
+    /// Number of pixels.
+    pub fn pixels(&self) -> usize {
+        self.width as usize * self.height as usize
+    }
+}
+
+/// Work for a tracer: the samples `samples` of every pixel of `tile`, added up in groups of `group`.
+///
+/// A group holds samples of one of the [`PARTS`] into which the samples fall, which are `PARTS` apart: group `g` those from
+/// `samples.start + g / PARTS * PARTS * group + g % PARTS`, at most `group` of them and none past `samples.end`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Batch {
+    /// Which pixels.
+    pub tile: Tile,
+    /// Which samples of each.
+    pub samples: Range<u32>,
+    /// How many samples go into one sum; at least 1.
+    pub group: u32,
+}
+
+impl Batch {
+    /// Number of groups: those that hold at least one sample.
+    pub fn groups(&self) -> u32 {
+        let stride = u64::from(self.group) * u64::from(PARTS);
+        let samples = u64::from(self.samples.end - self.samples.start);
+        (samples / stride * u64::from(PARTS) + (samples % stride).min(u64::from(PARTS))) as u32
+    }
+
+    /// The samples of a group.
+    pub fn group_samples(&self, group: u32) -> StepBy<Range<u32>> {
+        let stride = self.group.saturating_mul(PARTS);
+        let start = self.samples.start + group / PARTS * stride;
+        let end = start.saturating_add(stride).min(self.samples.end);
+        (start + group % PARTS..end).step_by(PARTS as usize)
+    }
+}
+
+/// Rays, counted.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Rays {
+    /// Of all kinds: one from the camera for each sample, those that a path goes on with, and shadow rays.
+    pub all: u32,
+    /// Shadow rays among them.
+    pub shadow: u32,
+}
+
+impl std::ops::AddAssign for Rays {
+    fn add_assign(&mut self, more: Rays) {
+        self.all += more.all;
+        self.shadow += more.shadow;
+    }
+}
+
+/// The sum over one group of samples of one pixel.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct PixelSum {
+    /// Radiance of the samples that are finite, added up in linear RGB.
+    pub radiance: [f64; 3],
+    /// Rays that were traced for it.
+    pub rays: Rays,
+    /// Samples that were not finite and are left out.
+    pub dropped: u32,
+}
+
+/// A sample with a larger radiance counts as not finite: sums of such would soon exceed `f32`.
+pub const MOST_RADIANCE: f64 = 1e36;
+
+/// One sample of one pixel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct SampleId {
+    /// Index of the pixel, `y * width + x`.
+    pub pixel: u32,
+    /// Number of the sample.
+    pub sample: u32,
+}
+
+/// Everything measured so far: for every pixel, rows from the top, the sums of the radiance over the independent parts of its samples, and
+/// how many there are.
+///
+/// The sums are `f64`: at 1e7 samples they are right to ten digits, where `f32` sums are 9 % off.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Film {
+    /// Width in pixels.
+    pub width: u32,
+    /// Height in pixels.
+    pub height: u32,
+    /// Number of the first sample of every pixel: 0, unless the film holds a later part of a render.
+    pub first_sample: u32,
+    /// Radiance of each pixel in linear RGB, added up over the finite samples of each part.
+    pub sums: Vec<[[f64; 3]; PARTS as usize]>,
+    /// Samples of each pixel, from `first_sample` on. They differ between pixels where a render ended in the middle of a pass.
+    pub samples: Vec<u32>,
+    /// How many of them were not finite and are left out, by pixel and part, where there are any.
+    pub dropped: BTreeMap<(usize, usize), u32>,
+}
+
+impl Film {
+    /// A black film without samples.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] if it does not fit into memory, as [`Film::check_size`] tells.
+    pub fn new(width: u32, height: u32) -> Result<Self> {
+        Film::check_size(width, height)?;
+        let pixels = width as usize * height as usize;
+        let mut film =
+            Film { width, height, first_sample: 0, sums: Vec::new(), samples: Vec::new(), dropped: BTreeMap::new() };
+        let refused = |_| too_large(width, height, "what the system would give".into());
+        film.sums.try_reserve_exact(pixels).map_err(refused)?;
+        film.samples.try_reserve_exact(pixels).map_err(refused)?;
+        film.sums.resize(pixels, Default::default());
+        film.samples.resize(pixels, 0);
+        Ok(film)
+    }
+
+    /// Checks that a film of this size, and what writing it takes, fits into the memory that is free now.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] if it does not.
+    pub fn check_size(width: u32, height: u32) -> Result<()> {
+        if u64::from(width) * u64::from(height) > u64::from(u32::MAX) {
+            return Err(Error::Usage(format!(
+                "{width} x {height} pixels are more than the 2^32 - 1 that have a number"
+            )));
+        }
+        check_memory(width, height, crate::memory::available())
+    }
+
+    /// Number of pixels.
+    pub fn pixels(&self) -> usize {
+        self.sums.len()
+    }
+
+    /// Adds what a tracer measured for `batch`, in ascending order of the samples.
+    ///
+    /// # Panics
+    /// If there is not one sum for each pixel and group, or the tile leaves the film.
+    pub fn add(&mut self, batch: &Batch, sums: &[PixelSum]) {
+        let tile = batch.tile;
+        assert_eq!(sums.len(), tile.pixels() * batch.groups() as usize, "one sum a pixel and group");
+        assert!(tile.x + tile.width <= self.width && tile.y + tile.height <= self.height, "a tile inside the film");
+        for (group, sums) in sums.chunks_exact(tile.pixels().max(1)).enumerate() {
+            let part = (batch.samples.start as usize + group) % PARTS as usize;
+            for (row, sums) in sums.chunks_exact(tile.width as usize).enumerate() {
+                let start = (tile.y as usize + row) * self.width as usize + tile.x as usize;
+                for (column, sum) in sums.iter().enumerate() {
+                    let pixel = start + column;
+                    for (total, s) in self.sums[pixel][part].iter_mut().zip(sum.radiance) {
+                        *total += s;
+                    }
+                    if sum.dropped > 0 {
+                        *self.dropped.entry((pixel, part)).or_default() += sum.dropped;
+                    }
+                }
+            }
+        }
+        for row in tile.y..tile.y + tile.height {
+            let start = row as usize * self.width as usize + tile.x as usize;
+            for samples in &mut self.samples[start..start + tile.width as usize] {
+                *samples += batch.samples.end - batch.samples.start;
+            }
+        }
+    }
+
+    /// How many finite samples each part of a pixel has.
+    pub fn part_samples(&self, pixel: usize) -> [u32; PARTS as usize] {
+        std::array::from_fn(|part| {
+            // Of the samples before `end`, how many belong to the part.
+            let before = |end: u32| end / PARTS + u32::from((part as u32) < end % PARTS);
+            let taken = before(self.first_sample + self.samples[pixel]) - before(self.first_sample);
+            if self.dropped.is_empty() { taken } else { taken - self.dropped.get(&(pixel, part)).unwrap_or(&0) }
+        })
+    }
+
+    /// Adds the samples of a film of the same size that go on where those of this film end.
+    ///
+    /// # Panics
+    /// If the sizes differ, or the other film's samples do not follow on those of every pixel.
+    pub fn append(&mut self, next: &Film) {
+        assert_eq!((self.width, self.height), (next.width, next.height), "films of one size");
+        for pixel in 0..self.pixels() {
+            assert_eq!(self.first_sample + self.samples[pixel], next.first_sample, "samples without a gap");
+            for (sum, more) in self.sums[pixel].as_flattened_mut().iter_mut().zip(next.sums[pixel].as_flattened()) {
+                *sum += more;
+            }
+            self.samples[pixel] += next.samples[pixel];
+        }
+        for (place, count) in &next.dropped {
+            *self.dropped.entry(*place).or_default() += count;
+        }
+    }
+
+    /// Mean radiance of a pixel by its index, `y * width + x`, in linear RGB; black if it has no sample.
+    pub fn mean(&self, pixel: usize) -> [f64; 3] {
+        let samples: u32 = self.part_samples(pixel).iter().sum();
+        let sum = |channel: usize| self.sums[pixel].iter().map(|part| part[channel]).sum::<f64>();
+        if samples == 0 { [0.0; 3] } else { [0, 1, 2].map(|c| sum(c) / f64::from(samples)) }
+    }
+
+    /// Mean radiance of all pixels: linear RGB, row by row from the top.
+    pub fn to_linear(&self) -> Vec<f32> {
+        (0..self.pixels()).flat_map(|pixel| self.mean(pixel).map(|v| v as f32)).collect()
+    }
+
+    /// The number of samples of the pixel that has the fewest.
+    pub fn least_samples(&self) -> u32 {
+        self.samples.iter().copied().min().unwrap_or(0)
+    }
+
+    /// The number of samples of the pixel that has the most.
+    pub fn most_samples(&self) -> u32 {
+        self.samples.iter().copied().max().unwrap_or(0)
+    }
+}
+
+/// Bytes a pixel: the film's, 200 while its error is estimated, or while it is written with it.
+const BYTES_PER_PIXEL: u64 = 24 * PARTS as u64 + 4 + 200;
+
+/// Refuses a film that `available` bytes cannot hold.
+fn check_memory(width: u32, height: u32, available: Option<u64>) -> Result<()> {
+    match available {
+        Some(bytes) if u64::from(width) * u64::from(height) * BYTES_PER_PIXEL > bytes => {
+            Err(too_large(width, height, format!("{:.1} GiB, what is free now", bytes as f64 / f64::from(1 << 30))))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn too_large(width: u32, height: u32, limit: String) -> Error {
+    let bytes = u64::from(width) * u64::from(height) * BYTES_PER_PIXEL;
+    Error::Limit {
+        what: format!("a film of {width} x {height} pixels"),
+        needed: format!("{:.1} GiB of memory", bytes as f64 / f64::from(1 << 30)),
+        device: "this machine".into(),
+        limit,
+        advice: "choose a smaller --width and --height".into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn grey(v: f64) -> PixelSum {
+        PixelSum { radiance: [v; 3], rays: Rays { all: 1, shadow: 0 }, dropped: 0 }
+    }
+
+    #[test]
+    fn sums_do_not_drift() {
+        let mut film = Film::new(1, 1).unwrap();
+        let tile = Tile { x: 0, y: 0, width: 1, height: 1 };
+        let sums = vec![grey(0.1); 1000];
+        let mut single = 0.0f32;
+        for i in 0..10_000 {
+            film.add(&Batch { tile, samples: i * 1000..(i + 1) * 1000, group: 1 }, &sums);
+            (0..1000).for_each(|_| single += 0.1);
+        }
+        assert_eq!(film.samples, [10_000_000]);
+        assert!((film.mean(0)[0] / 0.1 - 1.0).abs() < 1e-9, "{}", film.mean(0)[0]);
+        assert!((single / 1e6 - 1.0).abs() > 0.05, "f32 would do: {single}");
+    }
+
+    #[test]
+    fn a_batch_lands_on_its_tile() {
+        let mut film = Film::new(4, 3).unwrap();
+        let tile = Tile { x: 1, y: 1, width: 2, height: 2 };
+        film.add(&Batch { tile, samples: 0..2, group: 1 }, &[1.0, 2.0, 3.0, 4.0, 10.0, 20.0, 30.0, 40.0].map(grey));
+        // The third sample, of the third part.
+        film.add(&Batch { tile, samples: 2..3, group: 16 }, &[100.0, 200.0, 300.0, 400.0].map(grey));
+        let sums: Vec<f64> = film.sums.iter().map(|s| s.iter().map(|part| part[0]).sum()).collect();
+        assert_eq!(sums, [0.0, 0.0, 0.0, 0.0, 0.0, 111.0, 222.0, 0.0, 0.0, 333.0, 444.0, 0.0]);
+        assert_eq!(film.sums[6].map(|part| part[1]), [2.0, 20.0, 200.0, 0.0]);
+        assert_eq!(film.samples, [0, 0, 0, 0, 0, 3, 3, 0, 0, 3, 3, 0]);
+        assert_eq!(film.part_samples(5), [1, 1, 1, 0]);
+        film.samples[0] = u32::MAX;
+        assert_eq!(film.part_samples(0), [1 << 30, 1 << 30, 1 << 30, (1 << 30) - 1]);
+        film.samples[0] = 0;
+        assert_eq!(film.mean(6), [74.0; 3]);
+        assert_eq!(film.to_linear()[..3], [0.0; 3]);
+        assert_eq!(film.to_linear()[3 * 5..3 * 6], [37.0; 3]);
+        assert_eq!((film.least_samples(), film.most_samples()), (0, 3));
+    }
+
+    #[test]
+    fn groups_hold_every_sample_once_and_of_one_part() {
+        let tile = Tile { x: 0, y: 0, width: 1, height: 1 };
+        for (samples, group) in [(0..4, 1), (4..71, 16), (3..11, 4), (0..1, 1), (0..2, 3), (16..16, 1), (64..257, 16)] {
+            let batch = Batch { tile, samples: samples.clone(), group };
+            let mut seen = vec![];
+            for g in 0..batch.groups() {
+                let these: Vec<u32> = batch.group_samples(g).collect();
+                assert!(!these.is_empty() && these.len() <= group as usize, "{batch:?} {g}: {these:?}");
+                assert!(these.iter().all(|s| (s - samples.start) % PARTS == g % PARTS), "{batch:?} {g}: {these:?}");
+                seen.extend(these);
+            }
+            seen.sort();
+            assert_eq!(seen, samples.clone().collect::<Vec<_>>(), "{batch:?}");
+        }
+    }
+
+    #[test]
+    fn samples_that_are_not_finite_are_left_out() {
+        let mut film = Film::new(1, 1).unwrap();
+        let tile = Tile { x: 0, y: 0, width: 1, height: 1 };
+        let sums = [grey(8.0), PixelSum { dropped: 1, ..grey(3.0) }, PixelSum { dropped: 2, ..grey(0.0) }, grey(9.0)];
+        film.add(&Batch { tile, samples: 0..8, group: 2 }, &sums);
+        assert_eq!(film.part_samples(0), [2, 1, 0, 2]);
+        assert_eq!(film.mean(0), [4.0; 3]);
+    }
+
+    #[test]
+    fn absurd_sizes_are_refused() {
+        let error = check_memory(65536, 65536, Some(8 << 30)).unwrap_err().to_string();
+        assert!(
+            error.contains("65536 x 65536") && error.contains("1200.0 GiB") && error.contains("8.0 GiB"),
+            "{error}"
+        );
+        assert!(check_memory(1920, 1080, Some(8 << 30)).is_ok());
+    }
+}

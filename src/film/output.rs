@@ -1,0 +1,151 @@
+//! Films to disk.
+
+use super::{Aovs, ErrorEstimate, Film};
+use crate::files::write_atomically;
+use crate::picture::{Attribute, Exr, Format, Values, save_linear};
+use crate::{Error, Result};
+use std::path::Path;
+
+impl Film {
+    /// Writes the picture to `path` in the format of its ending. `exposure` is in stops and changes a PNG only.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for an unknown ending, [`Error::Write`] if the system refuses; then nothing has changed at `path`.
+    pub fn save(&self, path: &Path, exposure: f32) -> Result<()> {
+        match Format::of(path)? {
+            Format::Exr => self.save_exr(path, vec![], vec![]),
+            Format::Png | Format::Hdr => save_linear(path, self.width, self.height, &self.to_linear(), exposure),
+        }
+    }
+
+    /// Writes an EXR picture with the layers of its AOVs ([`Aovs::channels`]) and the number of samples, `samples`.
+    ///
+    /// # Errors
+    /// [`Error::Write`] if the system refuses; then nothing has changed at `path`.
+    pub fn save_with_aovs(&self, path: &Path, aovs: &Aovs) -> Result<()> {
+        let mut more = aovs.channels();
+        more.push(("samples".into(), Values::Integer(self.samples.clone())));
+        self.save_exr(path, more, vec![])
+    }
+
+    /// Writes an EXR picture with further channels and attributes.
+    ///
+    /// # Errors
+    /// [`Error::Write`] if the system refuses; then nothing has changed at `path`.
+    pub(crate) fn save_exr(
+        &self,
+        path: &Path,
+        more: Vec<(String, Values)>,
+        about: Vec<(&str, Attribute<'_>)>,
+    ) -> Result<()> {
+        let bytes = encode_exr(self, more, about).map_err(|e| Error::write(path, e))?;
+        write_atomically(path, |out| out.write_all(&bytes))
+    }
+}
+
+/// The bytes of an EXR file: a film's means, their standard errors, and `more`.
+fn encode_exr<'a>(
+    film: &Film,
+    more: Vec<(String, Values)>,
+    mut attributes: Vec<(&'a str, Attribute<'a>)>,
+) -> std::io::Result<Vec<u8>> {
+    let (linear, errors) = (film.to_linear(), film.error_map());
+    attributes.push(("samplesPerPixel", Attribute::Number(f64::from(film.least_samples()))));
+    attributes.push(("droppedSamples", Attribute::Number(film.dropped.values().copied().map(f64::from).sum())));
+    if let Some(ErrorEstimate { rmse, rel_mse, fireflies, .. }) = errors.as_ref().map(|errors| errors.total) {
+        attributes.push(("estimatedRMSE", Attribute::Number(rmse)));
+        attributes.push(("estimatedRelMSE", Attribute::Number(rel_mse)));
+        attributes.push(("fireflies", Attribute::Number(fireflies as f64)));
+    }
+    let error = errors.as_ref().map(|errors| &errors.standard_error[..]);
+    let rgb = bytemuck::cast_slice(&linear);
+    let exr = Exr { width: film.width, height: film.height, rgb, error, more, attributes: &attributes };
+    exr.encode().map_err(std::io::Error::other)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::picture::to_srgb8;
+
+    /// A film of 9 x 2 pixels with values from 0 to 1e5, two samples each.
+    fn film() -> Film {
+        let mut film = Film::new(9, 2).unwrap();
+        for (pixel, sums) in film.sums.iter_mut().enumerate() {
+            let v = 10f64.powi(pixel as i32 - 12);
+            sums[1] = [2.0 * v, 4.0 * v, 0.0];
+        }
+        film.samples.fill(2);
+        film
+    }
+
+    fn read(path: &Path) -> Vec<f32> {
+        image::open(path).unwrap().into_rgb32f().into_raw()
+    }
+
+    #[test]
+    fn exr_keeps_every_bit() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.EXR");
+        film().save(&path, 3.0).unwrap();
+        assert_eq!(read(&path), film().to_linear());
+    }
+
+    #[test]
+    fn hdr_keeps_eight_bits() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.hdr");
+        film().save(&path, 3.0).unwrap();
+        let (got, expected) = (read(&path), film().to_linear());
+        assert_eq!(got.len(), expected.len());
+        for (pixel, (got, expected)) in got.chunks(3).zip(expected.chunks(3)).enumerate() {
+            let largest = expected.iter().copied().fold(0.0, f32::max);
+            for (g, e) in got.iter().zip(expected) {
+                assert!((g - e).abs() <= largest / 128.0, "pixel {pixel}: {g} for {e}");
+            }
+        }
+    }
+
+    /// Every number is off by half a step at most, and they are right in the mean.
+    #[test]
+    fn hdr_is_rounded() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.hdr");
+        let mut film = Film::new(50, 40).unwrap();
+        for (i, sums) in film.sums.iter_mut().enumerate() {
+            let v = 0.25 * 1.000_7f64.powi(i as i32);
+            sums[0] = [v, 0.3 * v, 0.05 * v];
+        }
+        // Rounded up to the next power of two.
+        film.sums[7][0] = [0.999, 0.5, 0.003_8];
+        film.samples.fill(1);
+        film.save(&path, 0.0).unwrap();
+        let (got, expected) = (read(&path), film.to_linear());
+        let mut off = 0.0;
+        for (got, expected) in got.chunks(3).zip(expected.chunks(3)) {
+            let step = (expected[0] * 1.002).log2().floor().exp2() / 128.0;
+            for (g, e) in got.iter().zip(expected) {
+                assert!((g - e).abs() <= 0.501 * step, "{got:?} for {expected:?}");
+            }
+            off += f64::from(got[2] - expected[2]) / f64::from(expected[2]);
+        }
+        assert!((off / 2000.0).abs() < 1e-3, "the weakest channel is off by {} in the mean", off / 2000.0);
+        // 0.0038 is just below half a step of 1/128.
+        assert_eq!(got[3 * 7..3 * 8], [1.0, 0.5, 0.0]);
+    }
+
+    #[test]
+    fn png_is_exposed_srgb() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        let mut film = Film::new(3, 1).unwrap();
+        for (sums, value) in film.sums.iter_mut().zip([[0.0, 0.001, 0.05], [0.107, 0.25, 0.5], [1.0, 7.0, -1.0]]) {
+            sums[0] = value;
+        }
+        film.samples.fill(1);
+        film.save(&path, 1.0).unwrap();
+        // Twice the values; the expected ones are the standard's formula worked out by hand.
+        assert_eq!(image::open(&path).unwrap().into_rgb8().into_raw(), [0, 7, 89, 127, 188, 255, 255, 255, 0]);
+        assert_eq!(to_srgb8(&[0.0, f32::INFINITY, f32::NAN], 0.0), [0, 255, 0]);
+    }
+}

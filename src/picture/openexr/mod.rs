@@ -1,0 +1,32 @@
+//! OpenEXR: pictures of floats, with the standard error of every pixel beside them.
+
+mod channels;
+mod picture;
+mod writer;
+
+pub(crate) use channels::{read_channels, read_texts};
+pub(super) use picture::open;
+pub use writer::{Attribute, Exr};
+
+/// What the names of the channels begin with that hold the standard error.
+const ERROR: &str = "error.";
+
+/// A number for every pixel, rows from the top.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Values {
+    /// 32-bit floats.
+    Float(Vec<f32>),
+    /// 32-bit whole numbers.
+    Integer(Vec<u32>),
+}
+
+fn in_words(error: ::exr::error::Error) -> String {
+    match error {
+        ::exr::error::Error::NotSupported(what) => format!("this kind of OpenEXR file cannot be read here ({what})"),
+        ::exr::error::Error::Invalid(what) => format!("it is damaged or truncated ({what})"),
+        other => other.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,62 @@
+//! Pictures to disk: PNG to look at, EXR and HDR to compute with.
+
+use super::Format;
+use super::openexr::Exr;
+use super::srgb::to_srgb8;
+use crate::Result;
+use crate::files::write_atomically;
+use image::{ExtendedColorType, ImageEncoder};
+use std::path::Path;
+
+/// Writes linear RGB, row by row from the top, to `path` in the format of its ending. `exposure` is in stops and changes a PNG only.
+///
+/// # Errors
+/// [`Error::Usage`](crate::Error::Usage) for an unknown ending, [`Error::Write`](crate::Error::Write) if the system refuses; then nothing has changed at `path`.
+pub fn save_linear(path: &Path, width: u32, height: u32, linear: &[f32], exposure: f32) -> Result<()> {
+    let format = Format::of(path)?;
+    write_atomically(path, |out| match format {
+        Format::Png => image::codecs::png::PngEncoder::new(out).write_image(
+            &to_srgb8(linear, exposure),
+            width,
+            height,
+            ExtendedColorType::Rgb8,
+        ),
+        Format::Exr => {
+            let exr =
+                Exr { width, height, rgb: bytemuck::cast_slice(linear), error: None, more: vec![], attributes: &[] };
+            Ok(out.write_all(&exr.encode().map_err(std::io::Error::other)?)?)
+        }
+        Format::Hdr => image::codecs::hdr::HdrEncoder::new(out).write_image(
+            bytemuck::cast_slice(&before_truncation(linear)),
+            width,
+            height,
+            ExtendedColorType::Rgb32F,
+        ),
+    })
+}
+
+/// Writes an 8-bit picture as a PNG.
+///
+/// # Errors
+/// [`Error::Write`](crate::Error::Write) if the system refuses; then nothing has changed at `path`.
+pub fn save_png(path: &Path, picture: &image::RgbImage) -> Result<()> {
+    write_atomically(path, |out| {
+        let (width, height) = picture.dimensions();
+        image::codecs::png::PngEncoder::new(out).write_image(picture, width, height, ExtendedColorType::Rgb8)
+    })
+}
+
+/// Half a step of RGBE more of everything: the encoder truncates, which would make a picture darker by half a step in the mean (2 % in the
+/// weakest channel of the Cornell box).
+fn before_truncation(linear: &[f32]) -> Vec<f32> {
+    let more = |pixel: &[f32]| {
+        let largest = pixel.iter().copied().fold(0.0, f32::max);
+        let power = (largest.log2().floor() + 1.0).exp2();
+        let step = power / 256.0;
+        // The largest channel may be rounded up to the next power of two, where steps are twice as long.
+        let half = if largest + 0.5 * step >= power { step } else { 0.5 * step };
+        let more = |v: &f32| if largest > 0.0 && half.is_finite() { v + half } else { *v };
+        [more(&pixel[0]), more(&pixel[1]), more(&pixel[2])]
+    };
+    linear.chunks_exact(3).flat_map(more).collect()
+}

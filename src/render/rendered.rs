@@ -1,0 +1,129 @@
+//! What a render did so far.
+
+use super::progress::{LEAST_FOR_NOISE, Progress};
+use super::tracer::Traced;
+use crate::film::{Batch, Film, SampleId};
+use crate::{Error, Result};
+
+/// How many of the samples that were not finite are remembered.
+pub const DROPPED_NAMED: usize = 15;
+
+/// Why a render ended.
+#[derive(Debug)]
+pub enum End {
+    /// Every pixel has the samples it was to get.
+    Samples,
+    /// The time was up.
+    Time,
+    /// The estimated error is below the limit.
+    Noise,
+    /// `stop` was set.
+    Stopped,
+    /// The tracer failed; what it had done before is on the film.
+    Failed(Error),
+}
+
+/// What a render did so far: enough to go on with it.
+#[derive(Debug)]
+pub struct Rendered {
+    /// The sums.
+    pub film: Film,
+    /// Samples, rays and seconds, over all runs.
+    pub progress: Progress,
+    /// How many samples were not finite and are left out.
+    pub dropped: u64,
+    /// Some of them, in the order in which they were rendered; at most [`DROPPED_NAMED`].
+    pub dropped_samples: Vec<SampleId>,
+    /// Seconds that the device was busy by its own clock; 0 if it has none.
+    pub device_seconds: f64,
+    /// The number of samples at which a limit of the noise is looked at next.
+    pub noise_aim: u32,
+    /// Why the last run ended.
+    pub end: End,
+}
+
+impl Rendered {
+    /// Nothing yet of a picture of `width` by `height` pixels, whose samples will begin with number `first_sample`.
+    ///
+    /// # Errors
+    /// If the film does not fit into memory.
+    pub fn nothing((width, height): (u32, u32), first_sample: u32) -> Result<Self> {
+        let mut film = Film::new(width, height)?;
+        film.first_sample = first_sample;
+        let pixels = u64::from(width) * u64::from(height);
+        Ok(Rendered {
+            film,
+            progress: Progress { pixels, first_sample, ..Progress::default() },
+            dropped: 0,
+            dropped_samples: Vec::new(),
+            device_seconds: 0.0,
+            noise_aim: LEAST_FOR_NOISE,
+            end: End::Stopped,
+        })
+    }
+
+    /// Takes in what a tracer did.
+    pub(super) fn add(&mut self, batch: &Batch, traced: &Traced) {
+        self.film.add(batch, &traced.sums);
+        self.dropped += traced.sums.iter().map(|s| u64::from(s.dropped)).sum::<u64>();
+        let room = DROPPED_NAMED.saturating_sub(self.dropped_samples.len());
+        self.dropped_samples.extend(traced.dropped.iter().take(room));
+        self.device_seconds += traced.device_seconds.unwrap_or(0.0);
+        self.progress.samples += samples_of(batch);
+        self.progress.rays += traced.sums.iter().map(|s| u64::from(s.rays.all)).sum::<u64>();
+        self.progress.shadow_rays += traced.sums.iter().map(|s| u64::from(s.rays.shadow)).sum::<u64>();
+    }
+
+    /// Adds a part whose samples go on where these end.
+    pub(crate) fn append(&mut self, next: &Rendered) {
+        self.film.append(&next.film);
+        self.dropped = self.dropped.saturating_add(next.dropped);
+        let room = DROPPED_NAMED.saturating_sub(self.dropped_samples.len());
+        self.dropped_samples.extend(next.dropped_samples.iter().take(room));
+        self.device_seconds += next.device_seconds;
+        self.progress.samples = self.progress.samples.saturating_add(next.progress.samples);
+        self.progress.rays = self.progress.rays.saturating_add(next.progress.rays);
+        self.progress.shadow_rays = self.progress.shadow_rays.saturating_add(next.progress.shadow_rays);
+        self.progress.seconds += next.progress.seconds;
+    }
+
+    /// Estimates the error and says whether it is below `limit`; if not, when to look again. Only where all pixels have
+    /// [`Rendered::noise_aim`] samples.
+    pub(super) fn quiet_enough(&mut self, limit: f64) -> bool {
+        self.progress.error = self.film.error();
+        // No estimate at all: every sample was lost.
+        let relative = self.progress.error.map_or(f64::INFINITY, |error| error.relative());
+        if relative > limit {
+            self.noise_aim = samples_to_reach(self.noise_aim, relative, limit);
+        }
+        relative <= limit
+    }
+}
+
+pub(super) fn samples_of(batch: &Batch) -> u64 {
+    batch.tile.pixels() as u64 * u64::from(batch.samples.end - batch.samples.start)
+}
+
+/// How many samples to take before the error is looked at again: those that bring it from `relative` to `limit`, and a little more, but
+/// at most as many again as there are. The estimate of an error from few samples is not to be relied on.
+fn samples_to_reach(samples: u32, relative: f64, limit: f64) -> u32 {
+    let needed = f64::from(samples) * (relative / limit).powi(2);
+    let least = samples.saturating_add(samples / 32 + 1);
+    // Rust's `as` saturates.
+    ((1.01 * needed) as u32).clamp(least, samples.saturating_mul(2).max(least))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_next_look_at_the_noise() {
+        // Four times the error needs sixteen times the samples, and is not believed at once.
+        assert_eq!(samples_to_reach(100, 0.4, 0.1), 200);
+        assert_eq!(samples_to_reach(100, 0.11, 0.1), 122);
+        assert_eq!(samples_to_reach(100, 0.1001, 0.1), 104);
+        assert_eq!(samples_to_reach(100, f64::INFINITY, 0.1), 200);
+        assert_eq!(samples_to_reach(u32::MAX - 1, 0.2, 0.1), u32::MAX);
+    }
+}
