@@ -105,7 +105,7 @@ mod tests {
         );
 
         let texels = vec![[f16::ONE; 4]; 1 << 16];
-        scene.textures.push(Texture { name: String::new(), width: 256, height: 256, texels, clamp: false });
+        scene.textures.push(Texture { name: String::new(), width: 256, height: 256, texels, clamp: false }.into());
         scene.materials[0].maps.lambert = Some(0);
         let textured = Budget::of(&scene, true, &KernelModel::of(&scene));
         assert_eq!((textured.geometry, textured.textures), (1280 * 80 + 112, 8 << 16));

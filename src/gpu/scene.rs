@@ -238,7 +238,7 @@ fn inverse(mesh: &MeshBvh) -> Vec<u32> {
 }
 
 /// A texel for each texture (first texel, width, height, clamped), and all their texels, two in one.
-fn pack_textures(textures: &[Texture]) -> (Vec<[u32; 4]>, Vec<[u32; 4]>) {
+fn pack_textures(textures: &[Arc<Texture>]) -> (Vec<[u32; 4]>, Vec<[u32; 4]>) {
     let mut headers = Vec::with_capacity(textures.len());
     let mut halves: Vec<[u32; 2]> = Vec::with_capacity(textures.iter().map(|t| t.texels.len()).sum::<usize>() + 1);
     for texture in textures {

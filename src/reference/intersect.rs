@@ -6,23 +6,12 @@
 //! Where a surface is partly transparent, chance decides whether a ray meets it. `salt` tells the decisions of one ray apart
 //! from those of others ([`crate::sampling::ray_salt`]).
 
-use super::texture::texture_coordinates;
-use super::{Reference, gamma, tree};
+use super::hit::{Hit, texture_coordinates};
+use super::rounding::gamma;
+use super::tracer::Reference;
+use super::tree;
 use crate::sampling::{coverage, uniform};
 use glam::DVec3;
-
-/// Where a ray meets a triangle.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Hit {
-    /// How far along the ray, in multiples of its direction.
-    pub t: f64,
-    /// Index into [`crate::scene::Scene::objects`].
-    pub object: u32,
-    /// Index into the mesh's triangles.
-    pub triangle: u32,
-    /// Weights of the triangle's second and third corner; the first has the rest of 1.
-    pub barycentrics: [f64; 2],
-}
 
 impl Reference {
     /// The hit with the smallest `t` in `(0, t_max)`; of several at the same `t`, the first in the scene's order.

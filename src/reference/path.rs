@@ -1,9 +1,9 @@
 //! The radiance along a camera ray: the lecture's path tracer, its recursion turned into a loop with a throughput.
 
-use super::Reference;
-use super::intersect::Hit;
+use super::hit::Hit;
 use super::luminaire::emission_weight;
 use super::scatter::{MAX_SURVIVAL, SURE_THROUGHPUT, scatter, survival};
+use super::tracer::Reference;
 use crate::film::{AovSum, Rays};
 use crate::sampling::{light_block, ray_salt, scatter_block, uniform};
 use crate::scene::{Extinction, Integrator, LightSampling};

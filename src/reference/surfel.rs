@@ -1,8 +1,8 @@
 //! The surface element: everything that shading needs to know about a point on a surface.
 
-use super::intersect::Hit;
-use super::texture::texture_coordinates;
-use super::{Reference, gamma};
+use super::hit::{Hit, interpolate, texture_coordinates};
+use super::rounding::gamma;
+use super::tracer::Reference;
 use glam::{DVec2, DVec3, Vec3};
 use std::f64::consts::PI;
 
@@ -167,11 +167,6 @@ pub(super) fn offset_ray_origin(position: DVec3, error: DVec3, normal: DVec3, di
 /// `v`, turned to the side of `side`.
 fn facing(v: DVec3, side: DVec3) -> DVec3 {
     if v.dot(side) < 0.0 { -v } else { v }
-}
-
-/// The sum of `values`, weighted.
-pub(super) fn interpolate(weights: [f64; 3], values: [DVec3; 3]) -> DVec3 {
-    weights[0] * values[0] + weights[1] * values[1] + weights[2] * values[2]
 }
 
 /// The average of the channels.

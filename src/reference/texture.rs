@@ -1,8 +1,7 @@
 //! Images on surfaces: what a material's numbers are at a point.
 
-use super::Reference;
-use super::surfel::interpolate;
-use crate::scene::{Material, Mesh, Texture, Triangle};
+use super::tracer::Reference;
+use crate::scene::{Material, Texture};
 use glam::{DVec2, DVec4};
 
 /// Colour and alpha of a texture at `uv`, bilinear between the centres of the texels. `v` points up: row 0 is the image's top.
@@ -22,14 +21,6 @@ pub fn bilinear(texture: &Texture, uv: DVec2) -> DVec4 {
     let upper = texel(column, row).lerp(texel(column + 1.0, row), x - column);
     let lower = texel(column, row + 1.0).lerp(texel(column + 1.0, row + 1.0), x - column);
     upper.lerp(lower, y - row)
-}
-
-/// Texture coordinates at a point of a triangle that has these weights; 0 where the mesh has none.
-pub(super) fn texture_coordinates(mesh: &Mesh, triangle: &Triangle, weights: [f64; 3]) -> DVec2 {
-    if mesh.uvs.is_empty() {
-        return DVec2::ZERO;
-    }
-    interpolate(weights, triangle.vertices.map(|v| mesh.uvs[v as usize].as_dvec2().extend(0.0))).truncate()
 }
 
 impl Reference {

@@ -3,7 +3,8 @@
 //! The boxes are `f32`; the walk widens them for each ray by a bound on every rounding error between the ray and the world-space
 //! triangles, so that no triangle is missed that would have been hit.
 
-use super::{Instance, gamma};
+use super::instance::Instance;
+use super::rounding::gamma;
 use crate::scene::{Mesh, Scene};
 use glam::{DAffine3, DVec3, Vec3A};
 use obvhs::aabb::Aabb;
@@ -27,7 +28,7 @@ pub(super) struct MeshTree {
 
 impl Trees {
     pub(super) fn new(scene: &Scene, instances: &[Instance]) -> Self {
-        let meshes: Vec<MeshTree> = scene.meshes.iter().map(MeshTree::new).collect();
+        let meshes: Vec<MeshTree> = scene.meshes.iter().map(|mesh| MeshTree::new(mesh)).collect();
         let boxes: Vec<Aabb> = scene
             .objects
             .iter()

@@ -1,7 +1,7 @@
 //! Scenes built in code: for tests, measurements and programs that have no scene file.
 
 use super::*;
-use glam::{Affine3A, Mat3};
+use glam::{Affine3A, Mat3, Vec3};
 use std::collections::HashMap;
 
 /// A scene without objects, to be filled by [`add`]: the sensor is at the origin and looks along -z, 60 degrees high; unlimited paths. The
@@ -38,7 +38,7 @@ pub fn estimator(scene: &mut Scene) -> &mut Estimator {
 
 /// Adds a mesh, its material, and one instance of it; gives the mesh's index.
 pub fn add(scene: &mut Scene, mesh: Mesh, material: Material, object_to_world: Affine3A) -> u32 {
-    scene.meshes.push(mesh);
+    scene.meshes.push(mesh.into());
     let mesh = scene.meshes.len() as u32 - 1;
     add_instance(scene, mesh, material, object_to_world);
     mesh

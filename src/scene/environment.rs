@@ -1,9 +1,33 @@
-//! Which direction of the environment is chosen, and with which density.
+//! Light from where rays escape to: which direction is chosen, and with which density.
 
-use super::{Environment, EnvironmentImage};
 use crate::sampling::AliasTable;
 use glam::Vec3;
 use std::f64::consts::PI;
+use std::sync::Arc;
+
+/// Light from infinitely far away in all directions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Environment {
+    /// Radiance, or a factor to the image.
+    pub radiance: Vec3,
+    /// The image; none: the same from everywhere.
+    pub image: Option<Arc<EnvironmentImage>>,
+    /// Degrees by which the image is turned about +y, counter-clockwise seen from above.
+    pub rotation: f32,
+}
+
+/// A latitude-longitude image: the upper edge is +y, the middle is -z, the right half is +x.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EnvironmentImage {
+    /// A name for messages: the file name.
+    pub name: String,
+    /// Width in texels.
+    pub width: u32,
+    /// Height in texels.
+    pub height: u32,
+    /// Linear RGB from the upper left, row by row; not negative, finite, not all zero.
+    pub texels: Vec<Vec3>,
+}
 
 /// Texels of an environment, one of which is chosen by the light that comes from it; a constant environment is one texel.
 #[derive(Debug, Clone)]

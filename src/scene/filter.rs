@@ -1,12 +1,37 @@
-//! The pixel filters as densities, to be sampled.
+//! The pixel filters, also as densities, to be sampled.
 
-use super::{FilmSettings, Filter};
+use super::settings::FilmSettings;
 use std::f64::consts::{FRAC_2_SQRT_PI, PI, SQRT_2};
 
 /// Intervals of equal probability in [`Filter::inverse_cdf`].
 const INTERVALS: u32 = 256;
 
+/// Pixel filters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Filter {
+    /// Evenly over a square.
+    #[default]
+    Box,
+    /// Linear to zero at the radius, in x times in y.
+    Tent,
+    /// A Gaussian with a standard deviation of a third of the radius, cut there.
+    Gaussian,
+    /// The four-term Blackman-Harris window over the diameter.
+    #[serde(rename = "blackman-harris")]
+    BlackmanHarris,
+}
+
 impl Filter {
+    /// Half the width of the filter's square in pixels, unless a scene says otherwise.
+    pub fn default_radius(self) -> f32 {
+        match self {
+            Filter::Box => 0.5,
+            Filter::Tent => 1.0,
+            Filter::Gaussian | Filter::BlackmanHarris => 1.5,
+        }
+    }
+
     /// Where to look, in pixels from the pixel's centre and in one coordinate, for the light that the filter weighs: 257 positions from
     /// `-radius` to `radius`, rising, symmetric about 0. Position `i` has `i / 256` of the filter's weight below it. Both tracers
     /// take a uniform number to an offset by linear interpolation ("filter importance sampling": Ernst, Stamminger and Greiner

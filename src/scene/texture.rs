@@ -7,6 +7,7 @@ use half::f16;
 use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Most texels of all textures of a scene together: 2 GiB as they are kept.
 const MOST_TEXELS: u64 = 1 << 28;
@@ -57,7 +58,7 @@ struct Key {
 #[derive(Debug, Default)]
 pub(super) struct Textures {
     /// What was loaded.
-    pub loaded: Vec<Texture>,
+    pub loaded: Vec<Arc<Texture>>,
     /// For each of them.
     ranges: Vec<Range>,
     /// Their texels.
@@ -151,7 +152,7 @@ impl Textures {
             let texels: Vec<_> = (0..SIDE * SIDE).map(colour).collect();
             let name = "(missing texture)".into();
             self.ranges.push(Range::of(&texels));
-            self.loaded.push(Texture { name, width: SIDE, height: SIDE, texels, clamp: false });
+            self.loaded.push(Texture { name, width: SIDE, height: SIDE, texels, clamp: false }.into());
             self.loaded.len() as u32 - 1
         })
     }
@@ -193,7 +194,7 @@ impl Textures {
                 let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
                 let (width, height) = (image.width, image.height);
                 self.ranges.push(Range::of(&texels));
-                self.loaded.push(Texture { name, width, height, texels, clamp: map.clamp });
+                self.loaded.push(Texture { name, width, height, texels, clamp: map.clamp }.into());
                 Some(self.loaded.len() as u32 - 1)
             }
             Err(reason) => {

@@ -1,6 +1,6 @@
 //! Scene files in TOML; `scenes/README.md` describes the format.
 
-use super::load::Loader;
+use super::loader::Loader;
 use super::material::{Draft, DraftMaps, MapDraft};
 use super::text::{line_and_column, read_bytes, shortened};
 use super::texture::MapFile;

@@ -10,6 +10,7 @@ use crate::{Error, Result};
 use ::toml::Spanned;
 use glam::{DVec3, Vec3};
 use std::ops::Range;
+use std::sync::Arc;
 
 impl File<'_> {
     /// The `[film]`.
@@ -133,7 +134,7 @@ impl File<'_> {
             }
         };
         let rotation = rotate.as_ref().map_or(0.0, |rotate| rotate.get_ref().0);
-        Ok(Some(Environment { radiance, image, rotation }))
+        Ok(Some(Environment { radiance, image: image.map(Arc::new), rotation }))
     }
 
     /// The `[integrator]`.

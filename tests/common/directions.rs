@@ -166,7 +166,7 @@ pub fn sky() -> Environment {
         .collect();
     texels[SKY_WIDTH as usize + 3] = Vec3::new(60.0, 50.0, 40.0);
     let image = EnvironmentImage { name: "sky".into(), width: SKY_WIDTH, height: SKY_HEIGHT, texels };
-    Environment { radiance: Vec3::new(0.5, 1.0, 2.0), image: Some(image), rotation: 37.0 }
+    Environment { radiance: Vec3::new(0.5, 1.0, 2.0), image: Some(image.into()), rotation: 37.0 }
 }
 
 /// A direction by its azimuth from -z towards +x, and the cosine of its angle to +y.

@@ -4,6 +4,7 @@ use glam::{Affine3A, DVec2, DVec3, Vec3};
 use luminaire::reference::surfel::Surfel;
 pub use luminaire::scene::build::*;
 use luminaire::scene::*;
+use std::sync::Arc;
 
 /// A closed room from -2 to 2: red and green walls, a lamp under the ceiling and a point luminaire, a rotated, unevenly scaled block, and a
 /// smooth glossy ball. All light stays inside. Coordinates of the sensor and the luminaires are multiples of 1/16.
@@ -96,12 +97,12 @@ pub fn textured_room(width: u32, height: u32) -> Scene {
     let mut scene = cornell_like(width, height);
     let chequer = |x: u32, y: u32| if (x + y).is_multiple_of(2) { 0.9 } else { 0.2 };
     scene.textures = vec![
-        texture(8, 8, |x, y| [chequer(x, y), chequer(x, y + 1), 0.5, 1.0]),
-        texture(5, 3, |x, y| [x as f32 / 4.0, y as f32 / 2.0, 1.0, 1.0]),
-        texture(16, 16, |x, y| [1.0, 1.0, 1.0, if x % 4 < 2 && y % 3 > 0 { 0.0 } else { 1.0 }]),
+        texture(8, 8, |x, y| [chequer(x, y), chequer(x, y + 1), 0.5, 1.0]).into(),
+        texture(5, 3, |x, y| [x as f32 / 4.0, y as f32 / 2.0, 1.0, 1.0]).into(),
+        texture(16, 16, |x, y| [1.0, 1.0, 1.0, if x % 4 < 2 && y % 3 > 0 { 0.0 } else { 1.0 }]).into(),
     ];
-    scene.textures[1].clamp = true;
-    for mesh in &mut scene.meshes {
+    Arc::make_mut(&mut scene.textures[1]).clamp = true;
+    for mesh in scene.meshes.iter_mut().map(Arc::make_mut) {
         // From the positions, so that every triangle has some that vary.
         mesh.uvs =
             mesh.positions.iter().map(|p| glam::Vec2::new(0.5 * p.x + 0.3 * p.z, 0.5 * p.y - 0.4 * p.z)).collect();
@@ -150,12 +151,15 @@ pub fn open_air(width: u32, height: u32) -> Scene {
     };
     scene.environment = Some(Environment {
         radiance: Vec3::new(0.8, 0.9, 1.0),
-        image: Some(EnvironmentImage {
-            name: "sky".into(),
-            width: columns,
-            height: rows,
-            texels: (0..columns * rows).map(|i| sky(i % columns, i / columns)).collect(),
-        }),
+        image: Some(
+            EnvironmentImage {
+                name: "sky".into(),
+                width: columns,
+                height: rows,
+                texels: (0..columns * rows).map(|i| sky(i % columns, i / columns)).collect(),
+            }
+            .into(),
+        ),
         rotation: 30.0,
     });
     scene.sensor.lens = Some(Lens { radius: 0.0625, focus_distance: 2.5, blades: 6, rotation: 10.0 });

@@ -5,7 +5,7 @@ use crate::common::scenes::*;
 use glam::{Affine3A, DAffine3, DMat3, DVec3, Mat3, Vec3};
 use luminaire::gpu::probe::{Function, Probe};
 use luminaire::reference::Reference;
-use luminaire::reference::intersect::Hit;
+use luminaire::reference::hit::Hit;
 use luminaire::scene::{Mesh, Scene};
 use luminaire_measure::rays::{self, Ray};
 use rand::rngs::StdRng;

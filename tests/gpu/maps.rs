@@ -25,7 +25,7 @@ fn scene() -> Scene {
                 random4(x, y, index as u32, 1).map(|number| (4.0 * uniform(number)) as f32)
             });
             texture.clamp = clamp;
-            scene.textures.push(texture);
+            scene.textures.push(texture.into());
         }
     }
     scene

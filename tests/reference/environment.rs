@@ -25,7 +25,7 @@ fn lookup_at_known_directions() {
         |texels: Vec<Vec3>, width: u32, height: u32| EnvironmentImage { name: "i".into(), width, height, texels };
     let grey = |v: &[f32]| v.iter().map(|v| Vec3::splat(*v)).collect::<Vec<_>>();
     let look = |image: &EnvironmentImage, rotation: f32, w: DVec3| {
-        let environment = Environment { radiance: Vec3::splat(2.0), image: Some(image.clone()), rotation };
+        let environment = Environment { radiance: Vec3::splat(2.0), image: Some(image.clone().into()), rotation };
         Reference::new(&under(environment)).environment_radiance(w.normalize()).x
     };
     let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-12, "{a} instead of {b}");

@@ -21,7 +21,7 @@ fn yard() -> Scene {
     let mut texels = vec![Vec3::splat(0.3); 32];
     texels[10] = Vec3::splat(2.0);
     let image = EnvironmentImage { name: "sky".into(), width: 8, height: 4, texels };
-    scene.environment = Some(Environment { radiance: Vec3::ONE, image: Some(image), rotation: 20.0 });
+    scene.environment = Some(Environment { radiance: Vec3::ONE, image: Some(image.into()), rotation: 20.0 });
     scene
 }
 

@@ -145,7 +145,7 @@ fn mirrored_glass_is_glass() {
     let scene = |body: Mesh, place: Affine3A| {
         let mut scene = empty(16, 16);
         add(&mut scene, body, glass(1.5), Affine3A::from_translation(-Vec3::Z * 5.0) * place);
-        scene.environment = Some(Environment { image: Some(image.clone()), ..white() });
+        scene.environment = Some(Environment { image: Some(image.clone().into()), ..white() });
         Reference::new(&scene)
     };
     let a = scene(body, Affine3A::from_scale(Vec3::new(-1.0, 1.0, 1.0)));

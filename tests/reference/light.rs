@@ -96,7 +96,7 @@ fn area_luminaire_matches_lamberts_formula() {
     let mut scene = floor();
     add(&mut scene, lamp_triangle(), lamp(Vec3::splat(4.0)), lamp_place());
     let mut turned = scene.clone();
-    turned.meshes[1].triangles[0].vertices = [0, 2, 1];
+    std::sync::Arc::make_mut(&mut turned.meshes[1]).triangles[0].vertices = [0, 2, 1];
     for scene in [scene, turned] {
         let tracer = Reference::new(&scene);
         for (x, z) in [(0.0, 0.0), (2.0, -1.0), (-5.0, 4.0)] {

@@ -66,7 +66,7 @@ fn maps_multiply_their_numbers() {
     for k in 0..4 {
         let texel = |x: f32| [x, x * 0.5, 0.0, 0.25];
         let lower = texel(1.0 / (k + 2) as f32);
-        scene.textures.push(texture(1, &[texel(1.0), lower, lower], true));
+        scene.textures.push(texture(1, &[texel(1.0), lower, lower], true).into());
     }
     let maps = Maps { ambient: Some(0), lambert: Some(1), glossy: Some(2), emission: Some(3), opacity: None };
     let all = Vec3::new(0.5, 1.0, 0.5);
@@ -91,7 +91,7 @@ fn half_is_seen_through_opacity_one_half() {
     for (opacity, alpha) in [(0.5, None), (1.0, Some(0.5)), (0.625, Some(0.8))] {
         let mut scene = empty(8, 8);
         scene.environment = Some(Environment { radiance: Vec3::ONE, image: None, rotation: 0.0 });
-        scene.textures.extend(alpha.map(|alpha| alphas(&[alpha])));
+        scene.textures.extend(alpha.map(|alpha| alphas(&[alpha]).into()));
         let maps = Maps { opacity: alpha.map(|_| 0), ..Maps::default() };
         let black = Material { opacity, maps, ..matte(Vec3::ZERO) };
         let sheet = mapped_quad(Vec3::new(-9.0, -9.0, -2.0), Vec3::X * 18.0, Vec3::Y * 18.0);
@@ -136,7 +136,7 @@ fn light_falls_through_holes() {
         matte(Vec3::ONE),
         Affine3A::IDENTITY,
     );
-    scene.textures.push(alphas(&[0.75, 0.0]));
+    scene.textures.push(alphas(&[0.75, 0.0]).into());
     let maps = Maps { opacity: Some(0), ..Maps::default() };
     let sheet = mapped_quad(Vec3::new(-4.0, 1.0, -4.0), Vec3::X * 8.0, Vec3::Z * 8.0);
     add(&mut scene, sheet, Material { maps, ..matte(Vec3::ZERO) }, Affine3A::IDENTITY);
@@ -177,11 +177,10 @@ fn lamps_with_holes_and_pictures() {
         matte(Vec3::splat(0.5)),
         Affine3A::IDENTITY,
     );
-    scene.textures.push(texture(
-        2,
-        &[[1.0, 2.0, 0.5, 0.2], [0.0, 1.0, 0.5, 1.0], [1.0, 0.5, 0.5, 0.5], [2.0, 0.0, 0.5, 0.8]],
-        false,
-    ));
+    scene.textures.push(
+        texture(2, &[[1.0, 2.0, 0.5, 0.2], [0.0, 1.0, 0.5, 1.0], [1.0, 0.5, 0.5, 0.5], [2.0, 0.0, 0.5, 0.8]], false)
+            .into(),
+    );
     let maps = Maps { emission: Some(0), opacity: Some(0), ..Maps::default() };
     let picture = Material { opacity: 0.9, maps, ..lamp(Vec3::splat(3.0)) };
     let panel = mapped_quad(Vec3::new(-0.75, 0.75, -0.75), Vec3::X * 1.5, Vec3::Z * 1.5);

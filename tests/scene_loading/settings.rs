@@ -166,7 +166,7 @@ fn odd_environments_are_repaired_or_dropped() {
         folder.load("scene.toml")
     };
     let odd = sky(&[[f32::NAN, 1.0, -2.0], [4.0, f32::INFINITY, 0.0]]);
-    let texels = odd.environment.clone().expect("an environment").image.expect("an image").texels;
+    let texels = odd.environment.clone().expect("an environment").image.expect("an image").texels.clone();
     assert_eq!(texels, [Vec3::new(0.0, 1.0, 0.0), Vec3::new(4.0, 4.0, 0.0)]);
     warned(&odd, &["sky.exr", "1 texels", "negative or NaN"]);
     warned(&odd, &["sky.exr", "infinite"]);

@@ -6,7 +6,7 @@
 
 use super::rays::Ray;
 use glam::{Vec2, Vec3};
-use luminaire::reference::intersect::Hit;
+use luminaire::reference::hit::Hit;
 use luminaire::scene::Scene;
 use rayon::prelude::*;
 

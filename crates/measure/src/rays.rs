@@ -4,7 +4,7 @@ use glam::Vec3;
 use luminaire::Result;
 use luminaire::gpu::probe::{Call, Function, Probe};
 use luminaire::reference::Reference;
-use luminaire::reference::intersect::Hit;
+use luminaire::reference::hit::Hit;
 use luminaire::sampling::{random4, uniform};
 use rayon::prelude::*;
 

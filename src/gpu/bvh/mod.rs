@@ -45,7 +45,7 @@ pub struct MeshBvh {
 impl TwoLevelBvh {
     /// Builds the BVHs of all meshes, and the top level if `instances`.
     pub fn build(scene: &Scene, instances: bool) -> Self {
-        let mut built: Vec<CwBvh> = scene.meshes.iter().map(build_mesh).collect();
+        let mut built: Vec<CwBvh> = scene.meshes.iter().map(|mesh| build_mesh(mesh)).collect();
         let (mut top, object_order) = if instances {
             // A leaf of several instances would have rays enter those that they miss.
             let mut top = build(&instance_boxes(scene), 1);
@@ -98,7 +98,7 @@ fn build_mesh(mesh: &Mesh) -> CwBvh {
 fn instance_boxes(scene: &Scene) -> Vec<Aabb> {
     let (low, high) = scene.world_bounds();
     let pad = padding(low, high);
-    let mesh_boxes: Vec<_> = scene.meshes.iter().map(Mesh::bounds).collect();
+    let mesh_boxes: Vec<_> = scene.meshes.iter().map(|mesh| mesh.bounds()).collect();
     scene
         .objects
         .iter()

@@ -128,7 +128,7 @@ fn memory(scene: &Scene) -> String {
             + size_of_val(&m.uvs[..])
             + size_of_val(&m.triangles[..])
     };
-    let geometry: usize = scene.meshes.iter().map(mesh).sum();
+    let geometry: usize = scene.meshes.iter().map(|m| mesh(m)).sum();
     let images: usize = scene.textures.iter().map(|texture| size_of_val(&texture.texels[..])).sum();
     let film = u64::from(scene.film.width) * u64::from(scene.film.height) * 28;
     let size = |bytes: f64| match bytes {
@@ -169,13 +169,16 @@ mod tests {
         let estimator = Estimator { max_bounces: Some(4), ..Estimator::default() };
         let scene = Scene {
             path: "test.obj".into(),
-            meshes: vec![Mesh {
-                name: "one.obj".into(),
-                positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
-                uvs: vec![luminaire::glam::Vec2::ZERO; 3],
-                triangles: vec![Triangle { vertices: [0, 1, 2], material: 0 }],
-                ..Mesh::default()
-            }],
+            meshes: vec![
+                Mesh {
+                    name: "one.obj".into(),
+                    positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
+                    uvs: vec![luminaire::glam::Vec2::ZERO; 3],
+                    triangles: vec![Triangle { vertices: [0, 1, 2], material: 0 }],
+                    ..Mesh::default()
+                }
+                .into(),
+            ],
             objects: vec![
                 Object {
                     name: "thing".into(),
@@ -186,13 +189,10 @@ mod tests {
                 22
             ],
             materials: vec![material],
-            textures: vec![Texture {
-                name: "wood.png".into(),
-                width: 1,
-                height: 1,
-                texels: vec![Default::default()],
-                clamp: true,
-            }],
+            textures: vec![
+                Texture { name: "wood.png".into(), width: 1, height: 1, texels: vec![Default::default()], clamp: true }
+                    .into(),
+            ],
             luminaires: vec![Luminaire::Point { position: Vec3::Z, intensity: Vec3::ONE }],
             environment: Some(Environment { radiance: Vec3::splat(0.5), image: None, rotation: 0.0 }),
             sensor: Sensor {

@@ -16,7 +16,7 @@ pub(super) fn meshes(scene: &Scene) -> Vec<Vec<String>> {
             yes(m.uvs.is_empty()),
         ]
     };
-    std::iter::once(head).chain(scene.meshes.iter().map(mesh)).collect()
+    std::iter::once(head).chain(scene.meshes.iter().map(|m| mesh(m))).collect()
 }
 
 /// More rows than anyone reads are left out.

@@ -46,7 +46,7 @@ pub fn one_mesh(triangles: u64) -> Room {
     grid_cube(&mut mesh, steps(rest.max(12.0)), |p| p + 0.06 * bumps(3.0 * p));
     let lamp = [Vec3::new(-0.25, 0.9, -0.25), Vec3::X * 0.5, Vec3::Z * 0.5];
     add_quad(&mut mesh, lamp, LAMP);
-    scene.meshes.push(mesh);
+    scene.meshes.push(mesh.into());
     scene.objects.push(object(0, Affine3A::IDENTITY));
     finish(format!("mesh-{}", short(triangles)), scene, lamp)
 }
@@ -65,7 +65,7 @@ pub fn instances(instances: u64) -> Room {
         let d = p.normalize();
         (1.0 + 0.15 * bumps(4.0 * d).x) * d
     });
-    scene.meshes = vec![room, ball];
+    scene.meshes = vec![room.into(), ball.into()];
     scene.objects.push(object(0, Affine3A::IDENTITY));
     let size = 0.52 / (instances as f32).cbrt();
     let mut random = Random::new(1);
@@ -97,7 +97,7 @@ pub(super) fn lamps(lamps: u64) -> Scene {
         mesh.positions.extend([corner, corner + edge * Vec3::X, corner + edge * Vec3::Z]);
         mesh.triangles.push(Triangle { vertices: [first, first + 1, first + 2], material: LAMP });
     }
-    scene.meshes.push(mesh);
+    scene.meshes.push(mesh.into());
     scene.objects.push(object(0, Affine3A::IDENTITY));
     scene.materials = materials();
     scene

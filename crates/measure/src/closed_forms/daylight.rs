@@ -28,7 +28,7 @@ fn overcast() -> Environment {
     let angle = |row: u32| PI * (f64::from(row) + 0.5) / f64::from(ROWS);
     let texels = (0..ROWS).map(|row| Vec3::splat(overcast_radiance(angle(row).cos()) as f32)).collect();
     let image = EnvironmentImage { name: "overcast sky".into(), width: 1, height: ROWS, texels };
-    Environment { image: Some(image), ..uniform() }
+    Environment { image: Some(image.into()), ..uniform() }
 }
 
 fn black(scene: &mut Scene, corner: Vec3, a: Vec3, b: Vec3) {

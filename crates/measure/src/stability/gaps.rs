@@ -7,7 +7,7 @@ use crate::chart::{Axis, Chart};
 use crate::rays::{Random, Ray};
 use glam::{Affine3A, Vec3};
 use luminaire::Result;
-use luminaire::reference::intersect::Hit;
+use luminaire::reference::hit::Hit;
 use luminaire::scene::Scene;
 use luminaire::scene::build::{self, empty, matte, quad};
 

@@ -9,7 +9,7 @@ use luminaire::Result;
 use luminaire::backend::Backend;
 use luminaire::gpu::probe::{Function, Probe};
 use luminaire::reference::Reference;
-use luminaire::reference::intersect::Hit;
+use luminaire::reference::hit::Hit;
 use luminaire::scene::{Mesh, Scene, build};
 
 /// The reference, as a method.

@@ -10,7 +10,7 @@ use crate::chart::{Axis, Chart, Point};
 use crate::rays::{Random, Ray};
 use glam::{Affine3A, Vec3};
 use luminaire::Result;
-use luminaire::reference::intersect::Hit;
+use luminaire::reference::hit::Hit;
 use luminaire::scene::build::{icosphere, mesh};
 use luminaire::scene::{Mesh, Scene, Triangle};
 

@@ -1,0 +1,282 @@
+//! What is loaded of a scene, mesh by mesh and material by material.
+
+use super::material::{Draft, DraftMaps};
+use super::text::shortened;
+use super::texture::Textures;
+use super::{Maps, Material, Mesh, Object, Texture, mtl, obj};
+use crate::Result;
+use std::collections::{HashMap, HashSet};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// The meshes and materials loaded so far; each file is read once.
+#[derive(Debug)]
+pub(super) struct Loader {
+    /// Loaded meshes.
+    pub meshes: Vec<Arc<Mesh>>,
+    /// What was guessed, dropped or scaled.
+    pub warnings: Vec<String>,
+    /// Materials as far as they are known; number 0 is the fallback, "default".
+    drafts: Vec<Draft>,
+    /// What the scene file says about materials, by name.
+    overrides: Vec<Draft>,
+    /// Materials that only the scene file defines.
+    defined: HashMap<String, u32>,
+    /// For each mesh, the materials of its MTL files by name.
+    named: Vec<HashMap<String, u32>>,
+    /// For each mesh, where its file first uses a material without texture coordinates.
+    without_uv: Vec<Vec<WithoutUv>>,
+    /// By file and the bits of `smooth`.
+    mesh_files: HashMap<(PathBuf, Option<u32>), u32>,
+    libraries: HashMap<PathBuf, HashMap<String, u32>>,
+}
+
+/// Faces of one material that lack texture coordinates.
+#[derive(Debug)]
+struct WithoutUv {
+    material: u32,
+    /// `FILE:LINE`.
+    at: String,
+}
+
+impl Loader {
+    /// Starts with the materials of a scene file.
+    pub(super) fn new(overrides: Vec<Draft>) -> Self {
+        Loader {
+            meshes: Vec::new(),
+            warnings: Vec::new(),
+            drafts: vec![Draft::named("default")],
+            overrides,
+            defined: HashMap::new(),
+            named: Vec::new(),
+            without_uv: Vec::new(),
+            mesh_files: HashMap::new(),
+            libraries: HashMap::new(),
+        }
+    }
+
+    /// The mesh of an OBJ file with its MTL files; the same file is loaded once. `smooth`: see [`obj::read`].
+    ///
+    /// # Errors
+    /// If the OBJ cannot be read or is wrong. A missing or wrong MTL file is a warning.
+    pub(super) fn mesh(&mut self, path: &Path, smooth: Option<f32>) -> Result<u32> {
+        let identity = (identity(path), smooth.map(f32::to_bits));
+        if let Some(mesh) = self.mesh_files.get(&identity) {
+            return Ok(*mesh);
+        }
+        let obj::Obj { mut mesh, materials, libraries, without_uv, warnings } = obj::read(path, smooth)?;
+        // The same file with another `smooth` has the same faults.
+        let first = !self.mesh_files.keys().any(|(file, _)| *file == identity.0);
+        self.warnings.extend(warnings.into_iter().filter(|warning| first || warning.contains("`smooth`")));
+        let mut named = HashMap::new();
+        for (names, line) in &libraries {
+            self.library_line(path, *line, names, &mut named);
+        }
+        let mut missing = Vec::new();
+        // Entry 0 is for triangles before the first usemtl.
+        let mut material_of = vec![0];
+        for (name, line) in &materials {
+            let index = named.get(name).copied().or_else(|| self.define(name));
+            if index.is_none() {
+                missing.push((name, *line));
+            }
+            material_of.push(index.unwrap_or(0));
+        }
+        if let Some((_, line)) = missing.first().filter(|_| first) {
+            let names = listed(missing.iter().map(|(name, _)| name.as_str()));
+            let path = path.display();
+            self.warnings.push(format!("{path}:{line}: no MTL file defines {names}; the material `default` is used"));
+        }
+        for triangle in &mut mesh.triangles {
+            triangle.material = material_of[triangle.material as usize];
+        }
+        let index = self.meshes.len() as u32;
+        self.meshes.push(mesh.into());
+        self.named.push(named);
+        let at = |line| format!("{}:{line}", path.display());
+        let without_uv =
+            without_uv.iter().map(|(slot, line)| WithoutUv { material: material_of[*slot], at: at(*line) });
+        self.without_uv.push(without_uv.collect());
+        self.mesh_files.insert(identity, index);
+        Ok(index)
+    }
+
+    /// The material that an object of `mesh` means by `name`: one of its own MTL files, else of any, else of the scene file.
+    pub(super) fn material(&mut self, mesh: u32, name: &str) -> Option<u32> {
+        let own = self.named[mesh as usize].get(name).copied();
+        let any = || self.drafts.iter().position(|draft| draft.name == name).map(|index| index as u32);
+        own.or_else(any).or_else(|| self.define(name))
+    }
+
+    /// The names that [`Loader::material`] knows, for a message.
+    pub(super) fn material_names(&self) -> String {
+        let mut said = HashSet::new();
+        let names = self.drafts.iter().chain(&self.overrides).map(|draft| draft.name.as_str());
+        let names: Vec<_> = names.filter(|name| said.insert(*name)).collect();
+        listed(names.into_iter())
+    }
+
+    /// Applies the scene file's materials, fills in every default and loads the textures. Only materials that some triangle of
+    /// `objects` shows are worth a warning or a texture.
+    pub(super) fn finish_materials(&mut self, objects: &[Object]) -> (Vec<Material>, Vec<Arc<Texture>>) {
+        let shown = self.shown(objects);
+        let changes: HashMap<&str, usize> = (0..).zip(&self.overrides).map(|(i, change)| (&*change.name, i)).collect();
+        let mut known = vec![false; self.overrides.len()];
+        for (index, draft) in self.drafts.iter_mut().enumerate() {
+            if let Some(&change) = changes.get(&*draft.name) {
+                draft.overlay(&self.overrides[change]);
+                // The fallback is always there: what changes it changes something only where it is seen.
+                known[change] |= index > 0 || shown[0];
+            }
+        }
+        for (change, known) in self.overrides.iter().zip(known) {
+            if !known {
+                self.warnings.push(format!("the material `{}` of the scene file is not used by anything", change.name));
+            }
+        }
+        self.warn_of_ignored(&shown);
+        let mut textures = Textures::default();
+        let mut materials = Vec::new();
+        for (draft, shown) in self.drafts.iter().zip(shown) {
+            if shown {
+                materials.push(draft.finish(&mut textures, &mut self.warnings));
+            } else {
+                let without_maps = Draft { maps: DraftMaps::default(), ..draft.clone() };
+                materials.push(without_maps.finish(&mut textures, &mut Vec::new()));
+            }
+        }
+        self.warn_of_missing_uvs(objects, &materials);
+        (materials, textures.loaded)
+    }
+
+    /// For each material, whether some triangle of `objects` shows it.
+    fn shown(&self, objects: &[Object]) -> Vec<bool> {
+        let mut shown = vec![false; self.drafts.len()];
+        let mut seen = vec![false; self.meshes.len()];
+        for object in objects {
+            match object.material {
+                Some(material) => shown[material as usize] = true,
+                None if std::mem::replace(&mut seen[object.mesh as usize], true) => {}
+                None => {
+                    let triangles = &self.meshes[object.mesh as usize].triangles;
+                    triangles.iter().for_each(|triangle| shown[triangle.material as usize] = true);
+                }
+            }
+        }
+        shown
+    }
+
+    /// One warning for all materials of a file that ask for the same.
+    fn warn_of_ignored(&mut self, shown: &[bool]) {
+        let mut groups: Vec<(&(String, String), Vec<&str>)> = Vec::new();
+        let mut group_of: HashMap<&(String, String), usize> = HashMap::new();
+        for (draft, _) in self.drafts.iter().zip(shown).filter(|(_, shown)| **shown) {
+            let Some(ignored) = &draft.ignored else { continue };
+            let group = *group_of.entry(ignored).or_insert(groups.len());
+            if group == groups.len() {
+                groups.push((ignored, Vec::new()));
+            }
+            groups[group].1.push(&draft.name);
+        }
+        for ((file, what), names) in groups {
+            let noun = if names.len() == 1 { "material" } else { "materials" };
+            let names = listed(names.into_iter());
+            self.warnings.push(format!("{file}: {noun} {names}: not modelled, ignored: {what}"));
+        }
+    }
+
+    /// Maps need texture coordinates.
+    fn warn_of_missing_uvs(&mut self, objects: &[Object], materials: &[Material]) {
+        let mut said = HashSet::new();
+        let mut seen = HashSet::new();
+        for object in objects.iter().filter(|object| seen.insert((object.mesh, object.material))) {
+            for WithoutUv { material, at } in &self.without_uv[object.mesh as usize] {
+                let material = &materials[object.material.unwrap_or(*material) as usize];
+                if material.maps != Maps::default() && said.insert((&material.name, at)) {
+                    self.warnings.push(format!(
+                        "{at}: faces without texture coordinates, but material `{}` has maps; (0, 0) is used",
+                        material.name
+                    ));
+                }
+            }
+        }
+    }
+
+    /// A new material, if the scene file has one of this name; the same one the next time.
+    fn define(&mut self, name: &str) -> Option<u32> {
+        if let Some(index) = self.defined.get(name) {
+            return Some(*index);
+        }
+        self.overrides.iter().any(|draft| draft.name == name).then(|| {
+            let index = self.drafts.len() as u32;
+            self.drafts.push(Draft::named(name));
+            self.defined.insert(name.to_owned(), index);
+            index
+        })
+    }
+
+    /// Reads what one `mtllib` line names.
+    fn library_line(&mut self, obj: &Path, line: usize, names: &str, named: &mut HashMap<String, u32>) {
+        let folder = obj.parent().unwrap_or(Path::new(""));
+        for name in library_names(folder, names) {
+            match self.library(&folder.join(&name)) {
+                Ok(materials) => named.extend(materials),
+                Err(error) => self.warnings.push(format!("{}:{line}: {error}", obj.display())),
+            }
+        }
+    }
+
+    /// Name and index of each material of an MTL file.
+    fn library(&mut self, path: &Path) -> Result<HashMap<String, u32>> {
+        let identity = identity(path);
+        if let Some(materials) = self.libraries.get(&identity) {
+            return Ok(materials.clone());
+        }
+        let mut materials = HashMap::new();
+        for draft in mtl::read(path, &mut self.warnings)? {
+            materials.insert(draft.name.clone(), self.drafts.len() as u32);
+            self.drafts.push(draft);
+        }
+        self.libraries.insert(identity, materials.clone());
+        Ok(materials)
+    }
+}
+
+/// A list of names in a warning, not too long.
+fn listed<'a>(names: impl ExactSizeIterator<Item = &'a str>) -> String {
+    const MOST: usize = 8;
+    let more = names.len().saturating_sub(MOST);
+    let text = names.take(MOST).map(|name| format!("`{}`", shortened(name))).collect::<Vec<_>>().join(", ");
+    if more > 0 { format!("{text} and {more} more") } else { text }
+}
+
+/// One name for one file, however the path is spelled.
+fn identity(path: &Path) -> PathBuf {
+    path.canonicalize().unwrap_or_else(|_| path.to_owned())
+}
+
+/// The file names on an `mtllib` line. Names may hold blanks and a line may hold several names, so the whole line is tried
+/// first, then the pieces that end in `.mtl`; backslashes are separators, or stand before a blank that belongs to the name.
+fn library_names(folder: &Path, line: &str) -> Vec<String> {
+    let plain = |name: &str| name.replace("\\ ", " ").replace('\\', "/");
+    let readable = |name: &str| if folder.join(name).is_file() { name.to_owned() } else { plain(name) };
+    let whole = readable(line);
+    if folder.join(&whole).is_file() {
+        return vec![whole];
+    }
+    let mut names = Vec::new();
+    let mut name = String::new();
+    for word in line.split_whitespace() {
+        if !name.is_empty() {
+            name.push(' ');
+        }
+        name.push_str(word);
+        if word.to_ascii_lowercase().ends_with(".mtl") {
+            names.push(readable(&std::mem::take(&mut name)));
+        }
+    }
+    if !name.is_empty() {
+        names.push(readable(&name));
+    }
+    names
+}

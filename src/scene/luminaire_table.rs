@@ -1,0 +1,141 @@
+//! Every luminaire of a scene in one table, one of which is chosen by its power.
+
+use super::environment::EnvironmentDistribution;
+use super::luminaire::Luminaire;
+use super::mesh::{Mesh, Triangle, widen};
+use super::surface::Material;
+use super::world::Scene;
+use crate::sampling::AliasTable;
+use glam::{DVec3, Vec3};
+use std::f64::consts::PI;
+
+/// A triangle that emits, in world space: an area luminaire of any shape is a set of these.
+#[derive(Debug, Clone)]
+pub struct EmissiveTriangle {
+    /// Index into [`Scene::objects`].
+    pub object: u32,
+    /// Index into the mesh's triangles.
+    pub triangle: u32,
+    /// World-space corners.
+    pub vertices: [DVec3; 3],
+    /// Index into [`Scene::materials`], which knows what it emits.
+    pub material: u32,
+    /// Unit normal on the outward side, the only one that emits where the material is one-sided.
+    pub normal: DVec3,
+}
+
+impl EmissiveTriangle {
+    /// World-space area.
+    pub fn area(&self) -> f64 {
+        let [a, b, c] = self.vertices;
+        0.5 * (b - a).cross(c - a).length()
+    }
+}
+
+/// One entry of the [`LuminaireTable`].
+#[derive(Debug, Clone)]
+pub enum SampledLuminaire {
+    /// A point luminaire or one at infinity.
+    Impulse(Luminaire),
+    /// A triangle that emits.
+    Area(EmissiveTriangle),
+    /// The scene's environment.
+    Environment,
+}
+
+/// All luminaires, and the alias table that chooses among them in proportion to their power.
+#[derive(Debug, Clone, Default)]
+pub struct LuminaireTable {
+    /// Point luminaires and those at infinity first, in the scene's order; then the emissive triangles, object by object; then
+    /// the environment.
+    pub entries: Vec<SampledLuminaire>,
+    /// Chooses an index into `entries`.
+    pub choice: AliasTable,
+    /// Which direction of the environment is chosen, if it is an entry.
+    pub environment: Option<EnvironmentDistribution>,
+    /// For each material, the probability of choosing a triangle of it, for each unit of its area; 0 if it does not emit.
+    pub area_density: Vec<f64>,
+}
+
+impl LuminaireTable {
+    /// Collects the luminaires of a scene that emit anything.
+    pub fn new(scene: &Scene) -> Self {
+        let mut entries: Vec<SampledLuminaire> =
+            scene.luminaires.iter().cloned().map(SampledLuminaire::Impulse).collect();
+        for (object_index, object) in scene.objects.iter().enumerate() {
+            let to_world = widen(object.object_to_world);
+            let mesh = &scene.meshes[object.mesh as usize];
+            for (triangle_index, triangle) in mesh.triangles.iter().enumerate() {
+                let material = object.material.unwrap_or(triangle.material);
+                if scene.materials[material as usize].emission == Vec3::ZERO {
+                    continue;
+                }
+                let vertices =
+                    triangle.vertices.map(|v| to_world.transform_point3(mesh.positions[v as usize].as_dvec3()));
+                let normal = to_world.matrix3.inverse().transpose() * outward(mesh, triangle);
+                let normal = normal.normalize_or_zero();
+                let (object, triangle) = (object_index as u32, triangle_index as u32);
+                entries.push(SampledLuminaire::Area(EmissiveTriangle { object, triangle, vertices, material, normal }));
+            }
+        }
+        let (low, high) = scene.world_bounds();
+        let (center, radius) = (0.5 * (low + high), 0.5 * (high - low).length());
+        let environment = scene.environment.as_ref().and_then(EnvironmentDistribution::new);
+        entries.extend(environment.as_ref().map(|_| SampledLuminaire::Environment));
+        let exitance: Vec<f64> = scene.materials.iter().map(|material| exitance(scene, material)).collect();
+        let powers: Vec<f64> = entries
+            .iter()
+            .map(|entry| match entry {
+                SampledLuminaire::Impulse(luminaire) => impulse_power(luminaire, center, radius),
+                SampledLuminaire::Area(triangle) => exitance[triangle.material as usize] * triangle.area(),
+                SampledLuminaire::Environment => {
+                    PI * radius * radius * environment.as_ref().map_or(0.0, |environment| environment.total)
+                }
+            })
+            .collect();
+        let emits: Vec<bool> = powers.iter().map(|p| *p > 0.0).collect();
+        let mut keep = emits.iter();
+        entries.retain(|_| *keep.next().expect("one flag an entry"));
+        let powers: Vec<f64> = powers.into_iter().filter(|p| *p > 0.0).collect();
+        let total_power: f64 = powers.iter().sum();
+        let area_density = exitance.iter().map(|e| if *e == 0.0 { 0.0 } else { e / total_power }).collect();
+        LuminaireTable { choice: AliasTable::new(&powers), entries, environment, area_density }
+    }
+
+    /// The probability of choosing the environment; 0 if there is none.
+    pub fn environment_probability(&self) -> f64 {
+        // The last entry.
+        if self.environment.is_some() { self.choice.pdf.last().copied().unwrap_or(0.0) } else { 0.0 }
+    }
+}
+
+/// A vector along the outward normal, in object space: where the winding is counter-clockwise, unless the vertex normals know better.
+fn outward(mesh: &Mesh, triangle: &Triangle) -> DVec3 {
+    let [a, b, c] = triangle.vertices.map(|v| mesh.positions[v as usize].as_dvec3());
+    let winding = (b - a).cross(c - a);
+    let normals = triangle.vertices.map(|v| mesh.normals.get(v as usize).map_or(DVec3::ZERO, |n| n.as_dvec3()));
+    let known = normals.iter().all(|n| *n != DVec3::ZERO);
+    if known && normals.iter().sum::<DVec3>().dot(winding) < 0.0 { -winding } else { winding }
+}
+
+/// Power that a surface of this material emits for each unit of area, averaged over the channels and over its texture.
+fn exitance(scene: &Scene, material: &Material) -> f64 {
+    let texture = material.maps.emission.map_or(DVec3::ONE, |map| scene.textures[map as usize].mean());
+    let sides = if material.one_sided { 1.0 } else { 2.0 };
+    sides * PI * (material.emission.as_dvec3() * texture).element_sum() / 3.0
+}
+
+/// The radiant power of a luminaire without an area that may reach the scene, averaged over the channels; the scene lies in the sphere
+/// with this center and radius.
+fn impulse_power(luminaire: &Luminaire, center: DVec3, radius: f64) -> f64 {
+    let mean = |c: &Vec3| c.as_dvec3().element_sum() / 3.0;
+    match luminaire {
+        Luminaire::Point { position, intensity } => {
+            // From far away only the solid angle of the sphere counts.
+            let sine2 = (radius * radius / position.as_dvec3().distance_squared(center)).min(1.0);
+            let solid_angle = if sine2 < 1.0 { 2.0 * PI * sine2 / (1.0 + (1.0 - sine2).sqrt()) } else { 4.0 * PI };
+            solid_angle * mean(intensity)
+        }
+        Luminaire::Infinite { irradiance, .. } => PI * radius * radius * mean(irradiance),
+    }
+}

@@ -1,0 +1,57 @@
+//! Triangles, and where they stand.
+
+use glam::{Affine3A, DAffine3, DMat3, Vec2, Vec3};
+
+/// Triangles in object space.
+#[derive(Debug, Clone, Default)]
+pub struct Mesh {
+    /// A name for messages: the file name.
+    pub name: String,
+    /// Vertex positions.
+    pub positions: Vec<Vec3>,
+    /// Unit vertex normals: empty (no triangle has any), or one for each position; a zero vector means "none here", and a
+    /// triangle with such a corner is shaded flat.
+    pub normals: Vec<Vec3>,
+    /// Texture coordinates, v upwards: empty (no triangle has any), or one for each position.
+    pub uvs: Vec<Vec2>,
+    /// The triangles; all have a non-zero area.
+    pub triangles: Vec<Triangle>,
+}
+
+impl Mesh {
+    /// Object-space bounding box of the positions.
+    pub fn bounds(&self) -> (Vec3, Vec3) {
+        self.positions.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)))
+    }
+}
+
+/// Three corners and a material.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Triangle {
+    /// Indices into [`Mesh::positions`] (and [`Mesh::normals`]).
+    pub vertices: [u32; 3],
+    /// Index into [`Scene::materials`].
+    pub material: u32,
+}
+
+/// An instance of a mesh.
+#[derive(Debug, Clone)]
+pub struct Object {
+    /// A name for messages.
+    pub name: String,
+    /// Index into [`Scene::meshes`].
+    pub mesh: u32,
+    /// Object space to world space; invertible, may mirror and scale unevenly.
+    pub object_to_world: Affine3A,
+    /// Replaces the material of every triangle, if given.
+    pub material: Option<u32>,
+}
+
+/// An affine map in `f64`, from the `f32` numbers that both tracers share.
+pub(crate) fn widen(map: glam::Affine3A) -> DAffine3 {
+    let m = map.matrix3;
+    DAffine3 {
+        matrix3: DMat3::from_cols(m.x_axis.as_dvec3(), m.y_axis.as_dvec3(), m.z_axis.as_dvec3()),
+        translation: map.translation.as_dvec3(),
+    }
+}

@@ -1,0 +1,36 @@
+//! How a scene is rendered: size of the picture, samples, seed, exposure.
+
+use super::filter::Filter;
+use crate::sampling::Sampler;
+
+/// Size of the picture and its pixel filter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FilmSettings {
+    /// Width in pixels.
+    pub width: u32,
+    /// Height in pixels.
+    pub height: u32,
+    /// How a pixel weighs the light around it.
+    pub filter: Filter,
+    /// Half the width of the filter's square in pixels; greater than 0.
+    pub filter_radius: f32,
+}
+
+/// What a scene file may say about its own rendering.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RenderSettings {
+    /// Samples a pixel.
+    pub spp: u32,
+    /// Seed of the random numbers.
+    pub seed: u32,
+    /// Exposure in stops: the PNG shows radiance times 2^exposure.
+    pub exposure: f32,
+    /// Where the random numbers come from.
+    pub sampler: Sampler,
+}
+
+impl Default for RenderSettings {
+    fn default() -> Self {
+        RenderSettings { spp: 64, seed: 0, exposure: 0.0, sampler: Sampler::default() }
+    }
+}

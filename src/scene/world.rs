@@ -1,0 +1,89 @@
+//! The scene as a whole.
+
+use super::widen;
+use super::{
+    Environment, FilmSettings, Integrator, Luminaire, Material, Mesh, Object, RenderSettings, Sensor, Texture, Triangle,
+};
+use glam::Vec3;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// A whole scene, checked: indices are in range, numbers are finite, there is at least one triangle.
+///
+/// What is large (meshes, textures, the image of the environment) is shared: a clone costs little, and changing one does not show in the other
+/// ([`Arc::make_mut`]).
+#[derive(Debug, Clone)]
+pub struct Scene {
+    /// The file it came from.
+    pub path: PathBuf,
+    /// Meshes, in object space; an OBJ file is one mesh.
+    pub meshes: Vec<Arc<Mesh>>,
+    /// Instances of meshes. Never empty.
+    pub objects: Vec<Object>,
+    /// Materials; triangles and objects refer to them by index. Never empty.
+    pub materials: Vec<Material>,
+    /// Images; the maps of materials refer to them by index.
+    pub textures: Vec<Arc<Texture>>,
+    /// Point luminaires and luminaires at infinity. Area luminaires are the emissive triangles of `objects`.
+    pub luminaires: Vec<Luminaire>,
+    /// Light from where rays escape to; none: escaping light disappears.
+    pub environment: Option<Environment>,
+    /// The camera.
+    pub sensor: Sensor,
+    /// Film size and pixel filter.
+    pub film: FilmSettings,
+    /// Which estimator runs.
+    pub integrator: Integrator,
+    /// Samples, seed and exposure, unless the caller wants others.
+    pub settings: RenderSettings,
+    /// What the loader had to guess, drop or scale; one sentence each, with file and line where there is one.
+    pub warnings: Vec<String>,
+}
+
+impl Scene {
+    /// Triangles over all instances.
+    pub fn triangle_count(&self) -> u64 {
+        self.objects.iter().map(|o| self.meshes[o.mesh as usize].triangles.len() as u64).sum()
+    }
+
+    /// The material of a triangle of an instance: the instance's own, else the triangle's.
+    pub fn material_of(&self, object: &Object, triangle: &Triangle) -> &Material {
+        &self.materials[object.material.unwrap_or(triangle.material) as usize]
+    }
+
+    /// World-space bounding box of all instances (of the corners of the meshes' own boxes, so not always the smallest).
+    pub fn world_bounds(&self) -> (glam::DVec3, glam::DVec3) {
+        let boxes: Vec<_> = self.meshes.iter().map(|mesh| mesh.bounds()).collect();
+        let mut low = glam::DVec3::INFINITY;
+        let mut high = glam::DVec3::NEG_INFINITY;
+        for object in &self.objects {
+            let to_world = widen(object.object_to_world);
+            let (a, b) = boxes[object.mesh as usize];
+            for corner in 0..8 {
+                let pick = |bit: u32, axis: usize| if corner >> bit & 1 == 0 { a[axis] } else { b[axis] };
+                let p = Vec3::new(pick(0, 0), pick(1, 1), pick(2, 2));
+                let p = to_world.transform_point3(p.as_dvec3());
+                low = low.min(p);
+                high = high.max(p);
+            }
+        }
+        (low, high)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::scene::build::{add, empty, matte, quad};
+    use glam::{Affine3A, Vec3};
+    use std::sync::Arc;
+
+    #[test]
+    fn a_clone_shares_what_is_large() {
+        let mut scene = empty(1, 1);
+        add(&mut scene, quad(Vec3::ZERO, Vec3::X, Vec3::Y), matte(Vec3::ONE), Affine3A::IDENTITY);
+        let mut other = scene.clone();
+        assert!(Arc::ptr_eq(&scene.meshes[0], &other.meshes[0]));
+        Arc::make_mut(&mut other.meshes[0]).positions[0] = Vec3::Z;
+        assert_eq!([&scene, &other].map(|scene| scene.meshes[0].positions[0]), [Vec3::ZERO, Vec3::Z]);
+    }
+}
