@@ -80,7 +80,7 @@ mod tests {
     }
 
     fn read(path: &Path) -> Vec<f32> {
-        image::open(path).unwrap().into_rgb32f().into_raw()
+        crate::picture::read(path).unwrap().rgb.into_flattened()
     }
 
     #[test]

@@ -1,6 +1,8 @@
-//! Images from disk, in whatever format the `image` crate decodes.
+//! Images from disk, as textures and environments need them: OpenEXR, and whatever the `image` crate decodes.
 
+use super::openexr;
 use super::srgb::linear;
+use super::start::start_of;
 use crate::memory::{available, gib};
 use half::f16;
 use image::{DynamicImage, ImageDecoder, ImageError, ImageReader, Limits};
@@ -53,10 +55,8 @@ impl ImageFile {
     /// # Errors
     /// In words that can follow the file's name: it cannot be read, is no image, is damaged, or is too large.
     pub(crate) fn open(path: &Path, most: u64, too_many: impl FnOnce(u64) -> String) -> Result<Self, String> {
-        let about = std::fs::metadata(path).map_err(|e| e.to_string())?;
-        if !about.is_file() {
-            // A pipe or a device may never end.
-            return Err(if about.is_dir() { "it is a folder" } else { "it is not a regular file" }.into());
+        if start_of(path)? == openexr::MAGIC {
+            return Self::open_exr(path, most, too_many);
         }
         let mut reader =
             ImageReader::open(path).and_then(ImageReader::with_guessed_format).map_err(|e| e.to_string())?;
@@ -73,7 +73,9 @@ impl ImageFile {
         }
         limits.max_alloc = Some(MOST_MEMORY);
         // What the decoder takes for itself may be on top of the picture.
-        check_memory(&decoder, available())?;
+        let colour = decoder.color_type();
+        let channel = u64::from(colour.bytes_per_pixel() / colour.channel_count().max(1));
+        check_memory((width, height), decoder.total_bytes(), channel, available())?;
         limits.reserve(decoder.total_bytes()).map_err(in_words)?;
         decoder.set_limits(limits).map_err(in_words)?;
         let image = DynamicImage::from_decoder(decoder).map_err(in_words)?;
@@ -91,6 +93,21 @@ impl ImageFile {
             _ => Texels::Eight(image.into_rgba8().into_raw()),
         };
         Ok(ImageFile { width, height, has_alpha, texels })
+    }
+
+    fn open_exr(path: &Path, most: u64, too_many: impl FnOnce(u64) -> String) -> Result<Self, String> {
+        let file = openexr::Opened::new(path, openexr::Several::First)?;
+        let (width, height) = file.size();
+        let texels = u64::from(width) * u64::from(height);
+        let stored = texels * if file.has_alpha() { 16 } else { 12 };
+        if width > LARGEST_SIDE || height > LARGEST_SIDE || stored > MOST_MEMORY {
+            return Err(too_large());
+        }
+        if texels > most {
+            return Err(too_many(texels));
+        }
+        check_memory((width, height), stored, 4, available())?;
+        Ok(ImageFile { width, height, has_alpha: file.has_alpha(), texels: Texels::Float(file.rgba()?) })
     }
 
     /// How many texels there are.
@@ -167,12 +184,9 @@ impl ImageFile {
     }
 }
 
-/// Refuses what the memory that is free cannot take: the picture as it is stored, as four channels, and as half floats.
-fn check_memory(decoder: &impl ImageDecoder, available: Option<u64>) -> Result<(), String> {
-    let colour = decoder.color_type();
-    let (width, height) = decoder.dimensions();
-    let channel = u64::from(colour.bytes_per_pixel() / colour.channel_count().max(1));
-    let needed = decoder.total_bytes() + u64::from(width) * u64::from(height) * (4 * channel + 8);
+/// Refuses what the memory that is free cannot take: the picture as it is stored, as four channels of so many bytes, and as half floats.
+fn check_memory((width, height): (u32, u32), stored: u64, channel: u64, available: Option<u64>) -> Result<(), String> {
+    let needed = stored + u64::from(width) * u64::from(height) * (4 * channel + 8);
     match available {
         Some(free) if needed > free => Err(format!(
             "it has {width} x {height} texels, which take {} of memory, of which {} are free: make it smaller",
@@ -183,13 +197,14 @@ fn check_memory(decoder: &impl ImageDecoder, available: Option<u64>) -> Result<(
     }
 }
 
+fn too_large() -> String {
+    format!("it is too large: at most {LARGEST_SIDE} x {LARGEST_SIDE} texels and {} GiB are read", MOST_MEMORY >> 30)
+}
+
 /// What a decoder complains about.
 fn in_words(error: ImageError) -> String {
     match error {
-        ImageError::Limits(_) => format!(
-            "it is too large: at most {LARGEST_SIDE} x {LARGEST_SIDE} texels and {} GiB are read",
-            MOST_MEMORY >> 30
-        ),
+        ImageError::Limits(_) => too_large(),
         ImageError::Unsupported(_) => format!("it is in no format that can be read here ({error})"),
         _ => error.to_string(),
     }
@@ -201,14 +216,11 @@ mod tests {
 
     #[test]
     fn what_memory_cannot_take_is_refused() {
-        let mut png = Vec::new();
-        image::RgbImage::new(100, 10).write_to(&mut std::io::Cursor::new(&mut png), image::ImageFormat::Png).unwrap();
-        let decoder = image::codecs::png::PngDecoder::new(std::io::Cursor::new(png)).unwrap();
         // 3 bytes a texel in the file, then 4, then 8.
-        assert_eq!(check_memory(&decoder, Some(15_000)), Ok(()));
-        let error = check_memory(&decoder, Some(14_999)).unwrap_err();
+        assert_eq!(check_memory((100, 10), 3000, 1, Some(15_000)), Ok(()));
+        let error = check_memory((100, 10), 3000, 1, Some(14_999)).unwrap_err();
         assert!(error.contains("100 x 10") && error.contains("make it smaller"), "{error}");
-        assert_eq!(check_memory(&decoder, None), Ok(()));
+        assert_eq!(check_memory((100, 10), 3000, 1, None), Ok(()));
     }
 
     #[test]

@@ -8,6 +8,7 @@ mod pfm;
 mod pixels;
 mod read;
 mod srgb;
+mod start;
 mod write;
 
 pub use format::{Format, check_output};

@@ -1,10 +1,11 @@
 //! Pictures from disk, in any format that can be read.
 
 use super::image_file::ImageFile;
+use super::openexr::{self, Opened, Several};
+use super::pfm;
 use super::pixels::{MOST_PIXELS, Picture};
-use super::{openexr, pfm};
+use super::start::start_of;
 use crate::{Error, Result};
-use std::io::Read;
 use std::path::Path;
 
 /// Reads an EXR, PFM or HDR file, or what the `image` crate decodes besides (PNG, JPEG, TIFF, ...); the content says which, not the name.
@@ -17,17 +18,10 @@ pub fn read(path: &Path) -> Result<Picture> {
 }
 
 fn decode(path: &Path) -> std::result::Result<Picture, String> {
-    let about = std::fs::metadata(path).map_err(|e| e.to_string())?;
-    if !about.is_file() {
-        // A pipe or a device may never end.
-        return Err(if about.is_dir() { "it is a folder" } else { "it is not a regular file" }.into());
-    }
-    let mut start = Vec::new();
-    let file = std::fs::File::open(path).map_err(|e| e.to_string())?;
-    file.take(4).read_to_end(&mut start).map_err(|e| e.to_string())?;
+    let start = start_of(path)?;
     match start[..] {
         [] => return Err("it is empty".into()),
-        [0x76, 0x2f, 0x31, 0x01] => return openexr::open(path),
+        _ if start == openexr::MAGIC => return Opened::new(path, Several::Refused)?.picture(),
         [b'P', b'F' | b'f', space, ..] if space.is_ascii_whitespace() => return pfm::open(path),
         _ => {}
     }

@@ -18,9 +18,13 @@
 //! and 3 another ([`sobol`]). What belongs together, such as the two numbers of a direction, is therefore such a pair.
 
 mod alias;
+mod random;
+mod sampler;
 pub mod sobol;
 
 pub use alias::AliasTable;
+pub use random::{random4, uniform};
+pub use sampler::Sampler;
 
 /// Into how many independent parts the samples of a pixel fall: sample `s` is number `s / PARTS` of part `s % PARTS`. Each part has a
 /// scrambling of its own, so that the spread of their means tells the error, which one sequence could not: its samples
@@ -40,28 +44,6 @@ pub fn scatter_block(bounce: u32) -> u32 {
     2 + 2 * bounce
 }
 
-/// Where the random numbers come from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Sampler {
-    /// Independent numbers: [`random4`].
-    Independent,
-    /// Owen-scrambled Sobol points, two dimensions at a time: [`sobol::sobol4`]. Less noise for the same number of samples, most of all
-    /// where that number is a power of two.
-    #[default]
-    Sobol,
-}
-
-impl Sampler {
-    /// The four numbers of a block; `pixel` is `y * width + x`.
-    pub fn numbers(self, pixel: u32, sample: u32, block: u32, seed: u32) -> [u32; 4] {
-        match self {
-            Sampler::Independent => random4(pixel, sample, block, seed),
-            Sampler::Sobol => sobol::sobol4(pixel, sample % PARTS, sample / PARTS, block, seed),
-        }
-    }
-}
-
 /// What tells a ray's decisions about transparent surfaces apart from other rays'. `ray` is `2 b` for the ray to bounce `b`,
 /// `2 b + 1` for the shadow ray from there. Always independent numbers, whatever the sampler: they are few and far between.
 pub fn ray_salt(pixel: u32, sample: u32, ray: u32, seed: u32) -> u32 {
@@ -72,26 +54,4 @@ pub fn ray_salt(pixel: u32, sample: u32, ray: u32, seed: u32) -> u32 {
 /// indices.
 pub fn coverage(salt: u32, object: u32, triangle: u32) -> u32 {
     random4(salt, object, triangle, 0)[0]
-}
-
-/// Four independent 32-bit random numbers; `pixel` is `y * width + x`.
-pub fn random4(pixel: u32, sample: u32, block: u32, seed: u32) -> [u32; 4] {
-    let [mut x, mut y, mut z, mut w] =
-        [pixel, sample, block, seed].map(|v| v.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
-    x = x.wrapping_add(y.wrapping_mul(w));
-    y = y.wrapping_add(z.wrapping_mul(x));
-    z = z.wrapping_add(x.wrapping_mul(y));
-    w = w.wrapping_add(y.wrapping_mul(z));
-    [x, y, z, w] = [x, y, z, w].map(|v| v ^ (v >> 16));
-    x = x.wrapping_add(y.wrapping_mul(w));
-    y = y.wrapping_add(z.wrapping_mul(x));
-    z = z.wrapping_add(x.wrapping_mul(y));
-    w = w.wrapping_add(y.wrapping_mul(z));
-    [x, y, z, w]
-}
-
-/// A number in (0, 1) from the upper 23 bits, the middle of one of as many intervals: exact in `f32` and in `f64`, so both tracers see the
-/// same value. Neither end is ever met: it would put a direction on the rim of its hemisphere, where its path ends.
-pub fn uniform(random: u32) -> f64 {
-    (f64::from(random >> 9) + 0.5) / f64::from(1u32 << 23)
 }

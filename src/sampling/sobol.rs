@@ -12,7 +12,7 @@
 //! multiplication carries from the larger to the smaller intervals, which is the direction in which the scrambling must work.
 //! The twin is `sobol4` in `shaders/rng.glsl`, bit for bit.
 
-use super::random4;
+use super::random::random4;
 
 /// A nested uniform scramble of a reversed number: which half of an interval is swapped depends on the interval, in a way that
 /// `seed`, which must be well mixed, decides. Laine and Karras' idea of a hash that only carries upwards, with the steps and

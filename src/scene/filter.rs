@@ -1,6 +1,5 @@
 //! The pixel filters, also as densities, to be sampled.
 
-use super::settings::FilmSettings;
 use std::f64::consts::{FRAC_2_SQRT_PI, PI, SQRT_2};
 
 /// Intervals of equal probability in [`Filter::inverse_cdf`].
@@ -71,13 +70,6 @@ impl Filter {
                 x + (a1 * wave(1.0) + a2 * wave(2.0) + a3 * wave(3.0)) / a0
             }
         }
-    }
-}
-
-impl FilmSettings {
-    /// The filter is the pixel's own square, so that a film point needs no table.
-    pub fn is_pixel_square(&self) -> bool {
-        self.filter == Filter::Box && self.filter_radius == 0.5
     }
 }
 

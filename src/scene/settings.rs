@@ -16,6 +16,13 @@ pub struct FilmSettings {
     pub filter_radius: f32,
 }
 
+impl FilmSettings {
+    /// The filter is the pixel's own square, so that a film point needs no table.
+    pub fn is_pixel_square(&self) -> bool {
+        self.filter == Filter::Box && self.filter_radius == 0.5
+    }
+}
+
 /// What a scene file may say about its own rendering.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RenderSettings {

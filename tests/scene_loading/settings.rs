@@ -127,8 +127,7 @@ fn dark(text: &str) -> Folder {
 }
 
 fn exr(path: &Path, texels: &[[f32; 3]], width: u32) {
-    let image = image::Rgb32FImage::from_raw(width, texels.len() as u32 / width, texels.concat()).expect("a size");
-    image.save(path).expect("an EXR");
+    luminaire::picture::save_linear(path, width, texels.len() as u32 / width, &texels.concat(), 0.0).expect("an EXR");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use super::*;
 use glam::Vec3;
-use image::{DynamicImage, ImageFormat, Rgb32FImage, RgbImage, RgbaImage};
+use image::{DynamicImage, ImageFormat, RgbImage, RgbaImage};
 use luminaire::scene::Texture;
 
 /// The triangle with texture coordinates, and an MTL of one material.
@@ -85,9 +85,10 @@ fn every_format_is_read() {
 
 #[test]
 fn floats_are_linear_and_made_finite() {
-    let texels = vec![0.5, 1e9, f32::NAN, -3.0, f32::INFINITY, 0.25];
-    let image = Rgb32FImage::from_raw(2, 1, texels).expect("a size");
-    let scene = textured("map_Ke a.exr").image("a.exr", image).load("mesh.obj");
+    let texels = [0.5, 1e9, f32::NAN, -3.0, f32::INFINITY, 0.25];
+    let folder = textured("map_Ke a.exr");
+    luminaire::picture::save_linear(&folder.path("a.exr"), 2, 1, &texels, 0.0).expect("an EXR");
+    let scene = folder.load("mesh.obj");
     let texture = &scene.textures[first_material(&scene).maps.emission.expect("a map") as usize];
     assert_eq!((texel(texture, 0), texel(texture, 1)), ([0.5, 65_504.0, 0.0, 1.0], [0.0, 65_504.0, 0.25, 1.0]));
 }

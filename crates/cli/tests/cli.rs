@@ -227,8 +227,8 @@ fn a_render_writes_what_it_says() {
     let said = String::from_utf8_lossy(&output.stdout);
     for name in ["a.png", "b.EXR", "c.hdr"] {
         assert!(said.contains(&format!("{name}: 16 x 12 pixels, 5 samples a pixel")), "{said}");
-        let picture = image::open(folder.path().join(name)).unwrap();
-        assert_eq!((picture.width(), picture.height()), (16, 12));
+        let picture = luminaire::picture::read(&folder.path().join(name)).unwrap();
+        assert_eq!((picture.width, picture.height), (16, 12));
     }
     let text = std::fs::read_to_string(folder.path().join("s.json")).unwrap();
     let stats: serde_json::Value = serde_json::from_str(&text).unwrap();

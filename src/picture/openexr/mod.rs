@@ -5,8 +5,11 @@ mod picture;
 mod writer;
 
 pub(crate) use channels::{read_channels, read_texts};
-pub(super) use picture::open;
+pub(super) use picture::{Opened, Several};
 pub use writer::{Attribute, Exr};
+
+/// The bytes with which a file begins.
+pub(super) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
 /// What the names of the channels begin with that hold the standard error.
 const ERROR: &str = "error.";

@@ -4,8 +4,25 @@ use super::{ERROR, in_words};
 use crate::picture::pixels::{MOST_PIXELS, Picture, too_large};
 use ::exr::meta::MetaData;
 use ::exr::meta::header::Header;
-use ::exr::prelude::{ReadChannels, ReadLayers, read};
+use ::exr::prelude::{AnyChannel, AnyChannels, FlatSamples, Layer, ReadChannels, ReadLayers, read};
 use std::path::Path;
+
+/// What to do with a file that holds several pictures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::picture) enum Several {
+    /// Nobody knows which one is meant.
+    Refused,
+    /// The first part with R, G and B is meant.
+    First,
+}
+
+/// A file of which the head was read.
+#[derive(Debug)]
+pub(in crate::picture) struct Opened<'a> {
+    path: &'a Path,
+    choice: Choice,
+    window: Window,
+}
 
 /// Which channels of a file are the picture.
 #[derive(Debug, PartialEq)]
@@ -13,64 +30,121 @@ struct Choice {
     part: usize,
     /// Red, green and blue, which are one and the same if there is only luminance.
     rgb: [String; 3],
+    alpha: Option<String>,
     error: Option<[String; 3]>,
 }
 
-/// Reads the picture of a file. Integers are taken as the numbers they are, luminance alone as grey; alpha is left out, since colours are stored as
-/// they are over black.
-///
-/// # Errors
-/// In words that can follow the file's name.
-pub(in crate::picture) fn open(path: &Path) -> Result<Picture, String> {
-    let meta = MetaData::read_from_file(path, false).map_err(in_words)?;
-    let choice = choose(&meta.headers)?;
-    let header = &meta.headers[choice.part];
-    for other in &meta.headers {
+impl<'a> Opened<'a> {
+    /// Reads the head of a file and finds the picture in it.
+    ///
+    /// # Errors
+    /// In words that can follow the file's name.
+    pub(in crate::picture) fn new(path: &'a Path, several: Several) -> Result<Self, String> {
+        let meta = MetaData::read_from_file(path, false).map_err(in_words)?;
+        let choice = choose(&meta.headers, several)?;
+        let window = Window::new(&meta.headers[choice.part])?;
+        let opened = Opened { path, choice, window };
+        for header in &meta.headers {
+            opened.check(header)?;
+        }
+        Ok(opened)
+    }
+
+    /// Width and height in pixels.
+    pub(in crate::picture) fn size(&self) -> (u32, u32) {
+        (self.window.width as u32, self.window.height as u32)
+    }
+
+    /// Whether there is alpha.
+    pub(in crate::picture) fn has_alpha(&self) -> bool {
+        self.choice.alpha.is_some()
+    }
+
+    /// Refuses what the file is too short for, or what is enormous.
+    fn check(&self, header: &Header) -> Result<(), String> {
         // Every block has its place in a table, and a head of its own.
-        let least = other.chunk_count as u64 * 16;
-        if std::fs::metadata(path).is_ok_and(|about| about.len() < least) {
+        let least = header.chunk_count as u64 * 16;
+        if std::fs::metadata(self.path).is_ok_and(|about| about.len() < least) {
             return Err("it is truncated: its table of blocks is longer than the file".into());
         }
-        let samples = other.layer_size.area() as u64 * other.channels.list.len() as u64;
-        if other.layer_size.area() as u64 > MOST_PIXELS || samples > 4 * MOST_PIXELS {
-            return Err(too_large(other.layer_size.width() as u64, other.layer_size.height() as u64));
+        let samples = header.layer_size.area() as u64 * header.channels.list.len() as u64;
+        if header.layer_size.area() as u64 > MOST_PIXELS || samples > 4 * MOST_PIXELS {
+            return Err(too_large(header.layer_size.width() as u64, header.layer_size.height() as u64));
         }
+        Ok(())
     }
-    let window = Window::new(header)?;
-    let image = read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .all_channels()
-        .all_layers()
-        .all_attributes()
-        .from_file(path)
-        .map_err(in_words)?;
-    let layer = &image.layer_data[choice.part];
-    let planes = |names: &[String; 3]| -> Result<Vec<[f32; 3]>, String> {
-        let mut out = vec![[0.0; 3]; window.width * window.height];
-        for (channel, name) in names.iter().enumerate() {
-            let found = layer.channel_data.list.iter().find(|c| c.name.to_string() == *name);
-            let plane = found.ok_or_else(|| format!("its channel {name} cannot be read"))?;
-            for (y, row) in out.chunks_exact_mut(window.width).enumerate() {
-                let start = (window.top + y) * layer.size.width() + window.left;
-                for (x, pixel) in row.iter_mut().enumerate() {
-                    pixel[channel] = plane.sample_data.value_by_flat_index(start + x).to_f32();
-                }
+
+    /// The picture. Integers are taken as the numbers they are, luminance alone as grey; alpha is left out, since colours are stored as
+    /// they are over black.
+    ///
+    /// # Errors
+    /// In words that can follow the file's name; a crop is one, since what is outside is not known.
+    pub(in crate::picture) fn picture(&self) -> Result<Picture, String> {
+        self.window.check_whole()?;
+        let layer = self.layer()?;
+        let planes = |names: &[String; 3]| -> Result<Vec<[f32; 3]>, String> {
+            let mut out = vec![[0.0; 3]; self.window.width * self.window.height];
+            for (channel, name) in names.iter().enumerate() {
+                self.each_sample(&layer, name, |pixel, value| out[pixel][channel] = value)?;
             }
+            Ok(out)
+        };
+        let (width, height) = self.size();
+        let (rgb, error) = (planes(&self.choice.rgb)?, self.choice.error.as_ref().map(planes).transpose()?);
+        Ok(Picture { width, height, rgb, error, clamped: false })
+    }
+
+    /// Red, green, blue and alpha (1 in a file without it) of every pixel. Outside of a crop all that are there are 0.
+    ///
+    /// # Errors
+    /// In words that can follow the file's name.
+    pub(in crate::picture) fn rgba(&self) -> Result<Vec<f32>, String> {
+        let layer = self.layer()?;
+        let alpha = if self.has_alpha() { 0.0 } else { 1.0 };
+        let mut out = [0.0, 0.0, 0.0, alpha].repeat(self.window.width * self.window.height);
+        for (channel, name) in self.choice.rgb.iter().enumerate() {
+            self.each_sample(&layer, name, |pixel, value| out[4 * pixel + channel] = value)?;
+        }
+        if let Some(name) = &self.choice.alpha {
+            self.each_sample(&layer, name, |pixel, value| out[4 * pixel + 3] = value)?;
         }
         Ok(out)
-    };
-    Ok(Picture {
-        width: window.width as u32,
-        height: window.height as u32,
-        rgb: planes(&choice.rgb)?,
-        error: choice.error.as_ref().map(planes).transpose()?,
-        clamped: false,
-    })
+    }
+
+    fn layer(&self) -> Result<Layer<AnyChannels<FlatSamples>>, String> {
+        let image = read()
+            .no_deep_data()
+            .largest_resolution_level()
+            .all_channels()
+            .all_layers()
+            .all_attributes()
+            .from_file(self.path)
+            .map_err(in_words)?;
+        image.layer_data.into_iter().nth(self.choice.part).ok_or_else(|| "the part with the picture is missing".into())
+    }
+
+    /// Calls `take` with the index of a pixel and its number, for every pixel that is stored and shown.
+    fn each_sample(
+        &self,
+        layer: &Layer<AnyChannels<FlatSamples>>,
+        name: &str,
+        mut take: impl FnMut(usize, f32),
+    ) -> Result<(), String> {
+        let found = layer.channel_data.list.iter().find(|channel: &&AnyChannel<_>| channel.name.to_string() == name);
+        let plane = found.ok_or_else(|| format!("its channel {name} cannot be read"))?;
+        let window = &self.window;
+        for (y, row) in window.rows() {
+            for (x, column) in window.columns() {
+                let value = plane.sample_data.value_by_flat_index(row * layer.size.width() + column);
+                take(y * window.width + x, value.to_f32());
+            }
+        }
+        Ok(())
+    }
 }
 
 /// Finds the picture: R, G and B, else Y, without a prefix; else the only ones with a prefix.
-fn choose(headers: &[Header]) -> Result<Choice, String> {
+fn choose(headers: &[Header], several: Several) -> Result<Choice, String> {
     let names = |part: usize| headers[part].channels.list.iter().map(|c| c.name.to_string());
     let mut groups: Vec<(usize, String, bool)> = Vec::new();
     for part in 0..headers.len() {
@@ -87,6 +161,7 @@ fn choose(headers: &[Header]) -> Result<Choice, String> {
     let plain: Vec<_> = groups.iter().filter(|(_, prefix, _)| prefix.is_empty()).collect();
     let (part, prefix, colour) = match (&plain[..], &groups[..]) {
         ([one], _) => *one,
+        ([first, ..], _) if several == Several::First => plain.iter().find(|(.., colour)| *colour).unwrap_or(first),
         ([], [one]) => one,
         ([], []) => {
             let all: Vec<String> = (0..headers.len()).flat_map(names).collect();
@@ -119,15 +194,21 @@ fn choose(headers: &[Header]) -> Result<Choice, String> {
             ));
         }
     }
-    Ok(Choice { part: *part, rgb, error })
+    let alpha = Some(format!("{prefix}A")).filter(|alpha| names(*part).any(|name| name == *alpha));
+    Ok(Choice { part: *part, rgb, alpha, error })
 }
 
-/// The display window within the data window.
+/// Where the stored pixels lie and which are shown.
+#[derive(Debug)]
 struct Window {
-    left: usize,
-    top: usize,
+    /// Size of what is shown.
     width: usize,
     height: usize,
+    /// Size of what is stored.
+    stored: (usize, usize),
+    /// From the stored pixels' corner to the shown ones'.
+    left: i64,
+    top: i64,
 }
 
 impl Window {
@@ -136,20 +217,44 @@ impl Window {
         let (data, size) = (header.own_attributes.layer_position, header.layer_size);
         let offset = |shown: i32, data: i32| i64::from(shown) - i64::from(data);
         let (left, top) = (offset(shown.position.x(), data.x()), offset(shown.position.y(), data.y()));
-        let (width, height) = (shown.size.width() as i64, shown.size.height() as i64);
-        if left < 0 || top < 0 || left + width > size.width() as i64 || top + height > size.height() as i64 {
-            return Err(format!(
-                "it is a crop: the file holds {} x {} pixels at {} {} of a picture of {width} x {height}; write the whole picture, or \
-                 the crop as a picture of its own (data window and display window the same)",
-                size.width(),
-                size.height(),
-                -left,
-                -top
-            ));
-        }
+        let (width, height) = (shown.size.width(), shown.size.height());
         if width == 0 || height == 0 {
             return Err("it has no pixels".into());
         }
-        Ok(Window { left: left as usize, top: top as usize, width: width as usize, height: height as usize })
+        if (width as u64).saturating_mul(height as u64) > MOST_PIXELS {
+            return Err(too_large(width as u64, height as u64));
+        }
+        Ok(Window { width, height, stored: (size.width(), size.height()), left, top })
     }
+
+    /// Refuses a crop.
+    fn check_whole(&self) -> Result<(), String> {
+        let Window { width, height, stored, left, top } = self;
+        let beyond = |offset: i64, shown: usize, stored: usize| offset + shown as i64 > stored as i64;
+        if *left < 0 || *top < 0 || beyond(*left, *width, stored.0) || beyond(*top, *height, stored.1) {
+            return Err(format!(
+                "it is a crop: the file holds {} x {} pixels at {} {} of a picture of {width} x {height}; write the whole picture, or \
+                 the crop as a picture of its own (data window and display window the same)",
+                stored.0, stored.1, -left, -top
+            ));
+        }
+        Ok(())
+    }
+
+    /// Rows that are stored and shown: as shown, and as stored.
+    fn rows(&self) -> impl Iterator<Item = (usize, usize)> {
+        both(self.height, self.top, self.stored.1)
+    }
+
+    /// Columns that are stored and shown: as shown, and as stored.
+    fn columns(&self) -> impl Iterator<Item = (usize, usize)> {
+        both(self.width, self.left, self.stored.0)
+    }
+}
+
+/// The `i` below `shown` for which `i + offset` is within what is stored.
+fn both(shown: usize, offset: i64, stored: usize) -> impl Iterator<Item = (usize, usize)> {
+    let first = (-offset).clamp(0, shown as i64);
+    let end = (stored as i64 - offset).clamp(first, shown as i64);
+    (first..end).map(move |i| (i as usize, (i + offset) as usize))
 }

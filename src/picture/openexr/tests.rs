@@ -17,7 +17,7 @@ fn opened(bytes: &[u8]) -> Result<Picture, String> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.exr");
     std::fs::write(&path, bytes).unwrap();
-    open(&path)
+    Opened::new(&path, Several::Refused)?.picture()
 }
 
 fn rgb() -> Vec<[f32; 3]> {
@@ -150,4 +150,26 @@ fn damaged_files() {
     enormous[size + 12..size + 16].copy_from_slice(&60_000i32.to_le_bytes());
     let error = opened(&enormous).unwrap_err();
     assert!(error.contains("truncated") || error.contains("60001 x 60001"), "{error}");
+}
+
+/// What a texture gets: alpha, nothing outside of a crop, and the first of several pictures.
+#[test]
+fn four_channels() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.exr");
+    let rgba = |bytes: &[u8]| {
+        std::fs::write(&path, bytes).unwrap();
+        let opened = Opened::new(&path, Several::First).unwrap();
+        (opened.size(), opened.has_alpha(), opened.rgba().unwrap())
+    };
+    let (size, alpha, texels) = rgba(&plain(vec![part("a", &["R", "G", "B", "A"])]));
+    assert_eq!((size, alpha, &texels[4..8]), ((3, 2), true, &[1.0, 11.0, 21.0, 31.0][..]));
+    let (_, alpha, texels) = rgba(&plain(vec![part("a", &["Y"]), part("b", &["R", "G", "B"])]));
+    assert_eq!((alpha, &texels[4..8]), (false, &[1.0, 11.0, 21.0, 1.0][..]));
+    let mut layer = part("a", &["R", "G", "B", "A"]);
+    layer.attributes.layer_position = Vec2(1, -1);
+    // Its lower row lies in the upper one of what is shown, one to the right.
+    let (size, _, texels) = rgba(&file(IntegerBounds::new((0, 0), (2, 2)), vec![layer]));
+    assert_eq!((size, &texels[..8]), ((2, 2), &[0.0, 0.0, 0.0, 0.0, 3.0, 13.0, 23.0, 33.0][..]));
+    assert_eq!(texels[8..], [0.0; 8]);
 }

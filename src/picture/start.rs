@@ -1,0 +1,20 @@
+//! What a file seems to be, before it is read.
+
+use std::io::Read;
+use std::path::Path;
+
+/// The first four bytes of a regular file, or fewer if it has no more.
+///
+/// # Errors
+/// In words that can follow the file's name: it cannot be read, or is a folder, a pipe or a device.
+pub(super) fn start_of(path: &Path) -> Result<Vec<u8>, String> {
+    let about = std::fs::metadata(path).map_err(|e| e.to_string())?;
+    if !about.is_file() {
+        // A pipe or a device may never end.
+        return Err(if about.is_dir() { "it is a folder" } else { "it is not a regular file" }.into());
+    }
+    let mut start = Vec::new();
+    let file = std::fs::File::open(path).map_err(|e| e.to_string())?;
+    file.take(4).read_to_end(&mut start).map_err(|e| e.to_string())?;
+    Ok(start)
+}

@@ -1,0 +1,324 @@
+//! The map of CONTRIBUTING.md, held against the code's own imports: an arrow that the map does not have fails, one that the code does not
+//! have fails, and so does a circle of files.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use syn::visit::{self, Visit};
+
+/// A package of the workspace: the name that others import it by, and its folder of sources.
+const PACKAGES: [(&str, &str); 4] = [
+    ("luminaire", "src"),
+    ("luminaire_measure", "crates/measure/src"),
+    ("luminaire_view", "crates/view/src"),
+    ("luminaire_cli", "crates/cli/src"),
+];
+
+/// A module's full path, the package first.
+type Module = Vec<String>;
+
+/// One source file.
+struct File {
+    /// From the root of the repository.
+    path: String,
+    module: Module,
+    /// Where its imports lead: full paths, without what tests import.
+    imports: BTreeSet<Module>,
+    /// What it hands on under its own name: the name (`*` for all), and whence.
+    hands_on: Vec<(String, Module)>,
+}
+
+/// Gathers the paths of a file that is not about tests.
+struct Paths<'a> {
+    module: &'a [String],
+    /// Modules within the file, as deep as the visit is.
+    inner: Vec<String>,
+    imports: BTreeSet<Module>,
+    hands_on: Vec<(String, Module)>,
+}
+
+impl Paths<'_> {
+    /// The full path, if it begins in this workspace.
+    fn full(&self, segments: &[String]) -> Option<Module> {
+        let here: Module = self.module.iter().chain(&self.inner).cloned().collect();
+        let mut base = match segments.first()?.as_str() {
+            "crate" => vec![here[0].clone()],
+            "self" => here,
+            "super" => here[..here.len() - 1].to_vec(),
+            package if PACKAGES.iter().any(|(name, _)| *name == package) => vec![package.to_owned()],
+            _ => return None,
+        };
+        for segment in &segments[1..] {
+            if segment == "super" {
+                base.pop();
+            } else {
+                base.push(segment.clone());
+            }
+        }
+        Some(base)
+    }
+
+    fn import(&mut self, segments: &[String]) {
+        if segments.len() > 1 {
+            self.imports.insert(self.full(segments).unwrap_or_else(|| self.from_here(segments)));
+        }
+    }
+
+    fn use_tree(&mut self, before: &[String], tree: &syn::UseTree, handed_on: bool) {
+        let with = |name: &syn::Ident| before.iter().cloned().chain([name.to_string()]).collect::<Vec<_>>();
+        let mut leaf = |path: &[String], name: String| {
+            let path = self.full(path).unwrap_or_else(|| self.from_here(path));
+            if handed_on {
+                self.hands_on.push((name, path));
+            } else {
+                self.imports.insert(path);
+            }
+        };
+        match tree {
+            syn::UseTree::Path(path) => self.use_tree(&with(&path.ident), &path.tree, handed_on),
+            syn::UseTree::Group(group) => group.items.iter().for_each(|item| self.use_tree(before, item, handed_on)),
+            syn::UseTree::Name(name) if name.ident == "self" => {
+                leaf(before, before.last().cloned().unwrap_or_default());
+            }
+            syn::UseTree::Name(name) => leaf(&with(&name.ident), name.ident.to_string()),
+            syn::UseTree::Rename(rename) => leaf(&with(&rename.ident), rename.rename.to_string()),
+            syn::UseTree::Glob(_) => leaf(before, "*".into()),
+        }
+    }
+
+    /// `child::Name`, as the file of a folder says it. What is of another crate then seems to be of this very file, which is no import.
+    fn from_here(&self, segments: &[String]) -> Module {
+        self.module.iter().chain(&self.inner).chain(segments).cloned().collect()
+    }
+}
+
+fn is_for_tests(attributes: &[syn::Attribute]) -> bool {
+    attributes.iter().any(|attribute| {
+        attribute.path().is_ident("cfg")
+            && attribute.parse_args::<syn::Path>().is_ok_and(|condition| condition.is_ident("test"))
+    })
+}
+
+impl<'ast> Visit<'ast> for Paths<'_> {
+    fn visit_item_mod(&mut self, item: &'ast syn::ItemMod) {
+        if !is_for_tests(&item.attrs) {
+            self.inner.push(item.ident.to_string());
+            visit::visit_item_mod(self, item);
+            self.inner.pop();
+        }
+    }
+
+    fn visit_item_use(&mut self, item: &'ast syn::ItemUse) {
+        if !is_for_tests(&item.attrs) && item.leading_colon.is_none() {
+            self.use_tree(&[], &item.tree, !matches!(item.vis, syn::Visibility::Inherited));
+        }
+    }
+
+    fn visit_path(&mut self, path: &'ast syn::Path) {
+        let segments: Vec<_> = path.segments.iter().map(|segment| segment.ident.to_string()).collect();
+        self.import(&segments);
+        visit::visit_path(self, path);
+    }
+
+    /// What stands in a macro is no path yet.
+    fn visit_macro(&mut self, call: &'ast syn::Macro) {
+        self.tokens(call.tokens.clone());
+        visit::visit_macro(self, call);
+    }
+
+    fn visit_visibility(&mut self, _: &'ast syn::Visibility) {
+        // `pub(in crate::x)` imports nothing.
+    }
+}
+
+impl Paths<'_> {
+    fn tokens(&mut self, tokens: proc_macro2::TokenStream) {
+        let mut segments: Vec<String> = Vec::new();
+        let mut colons = 0;
+        for token in tokens {
+            match token {
+                proc_macro2::TokenTree::Ident(name) => {
+                    if colons != 2 {
+                        self.import(&std::mem::take(&mut segments));
+                    }
+                    segments.push(name.to_string());
+                    colons = 0;
+                }
+                proc_macro2::TokenTree::Punct(mark) if mark.as_char() == ':' => colons += 1,
+                other => {
+                    self.import(&std::mem::take(&mut segments));
+                    colons = 0;
+                    if let proc_macro2::TokenTree::Group(group) = other {
+                        self.tokens(group.stream());
+                    }
+                }
+            }
+        }
+        self.import(&segments);
+    }
+}
+
+/// Every source file of the workspace.
+fn files(root: &Path) -> Vec<File> {
+    let mut files = Vec::new();
+    for (package, folder) in PACKAGES {
+        let mut folders: Vec<(PathBuf, Module)> = vec![(root.join(folder), vec![package.to_owned()])];
+        while let Some((folder, module)) = folders.pop() {
+            for entry in std::fs::read_dir(&folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display())) {
+                let path = entry.expect("an entry").path();
+                let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
+                if path.is_dir() {
+                    folders.push((path, module.iter().cloned().chain([name]).collect()));
+                } else if path.extension().is_some_and(|ending| ending == "rs") && name != "tests" {
+                    let module = if ["mod", "lib", "main"].contains(&&*name) {
+                        module.clone()
+                    } else {
+                        module.iter().cloned().chain([name]).collect()
+                    };
+                    files.push(read(root, &path, module));
+                }
+            }
+        }
+    }
+    files
+}
+
+fn read(root: &Path, path: &Path, module: Module) -> File {
+    let text = std::fs::read_to_string(path).expect("a source file is text");
+    let syntax = syn::parse_file(&text).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    let mut paths = Paths { module: &module, inner: Vec::new(), imports: BTreeSet::new(), hands_on: Vec::new() };
+    paths.visit_file(&syntax);
+    let (imports, hands_on) = (paths.imports, paths.hands_on);
+    let path = path.strip_prefix(root).expect("below the root").to_string_lossy().replace('\\', "/");
+    File { path, module, imports, hands_on }
+}
+
+/// The workspace: who imports whom.
+struct House {
+    files: Vec<File>,
+    of_module: BTreeMap<Module, usize>,
+}
+
+impl House {
+    fn new(root: &Path) -> Self {
+        let files = files(root);
+        let of_module = files.iter().enumerate().map(|(index, file)| (file.module.clone(), index)).collect();
+        House { files, of_module }
+    }
+
+    /// The file that holds what a path names, through whoever hands it on.
+    fn holder(&self, path: &[String], depth: usize) -> Option<usize> {
+        assert!(depth < 20, "{path:?} is handed on in a circle");
+        let known = (1..=path.len()).rev().find(|length| self.of_module.contains_key(&path[..*length]))?;
+        let file = self.of_module[&path[..known]];
+        let Some(name) = path.get(known) else { return Some(file) };
+        // What is handed on under the path that it has already is of another crate.
+        let whence = |(_, from): &(String, Module), rest: &[String]| -> Option<usize> {
+            let whence: Module = from.iter().chain(rest).cloned().collect();
+            if whence == path { Some(file) } else { self.holder(&whence, depth + 1) }
+        };
+        let hands_on = &self.files[file].hands_on;
+        if let Some(named) = hands_on.iter().find(|(handed, _)| handed == name) {
+            return whence(named, &path[known + 1..]);
+        }
+        let globs = hands_on.iter().filter(|(handed, _)| handed == "*");
+        globs.filter_map(|glob| whence(glob, &path[known..])).find(|found| *found != file).or(Some(file))
+    }
+
+    /// For every file, the files that it imports from.
+    fn arrows(&self) -> Vec<BTreeSet<usize>> {
+        let arrow = |(index, file): (usize, &File)| {
+            let to = file.imports.iter().filter_map(|path| self.holder(path, 0));
+            to.filter(|to| *to != index).collect()
+        };
+        self.files.iter().enumerate().map(arrow).collect()
+    }
+}
+
+/// A row of the map: what lies at a path, and on what it stands.
+struct Room {
+    path: String,
+    stands_on: BTreeSet<String>,
+}
+
+/// The rooms of the table in CONTRIBUTING.md: rows of `| path | what | stands on |`, paths in backticks.
+fn rooms(root: &Path) -> Vec<Room> {
+    let text = std::fs::read_to_string(root.join("CONTRIBUTING.md")).expect("the map");
+    let quoted = |cell: &str| -> Vec<String> { cell.split('`').skip(1).step_by(2).map(str::to_owned).collect() };
+    let mut rooms = Vec::new();
+    for line in text.lines().filter(|line| line.starts_with("| `src/") || line.starts_with("| `crates/")) {
+        let cells: Vec<&str> = line.trim_matches('|').split('|').collect();
+        let [paths, _, stands_on] = cells[..] else { continue };
+        for path in quoted(paths) {
+            rooms.push(Room { path, stands_on: quoted(stands_on).into_iter().collect() });
+        }
+    }
+    assert!(rooms.len() > 8, "the table of CONTRIBUTING.md has only {} rooms", rooms.len());
+    rooms
+}
+
+/// Rooms that share the longest beginning with a file's path.
+fn room_of<'a>(rooms: &'a [Room], file: &str) -> Option<&'a Room> {
+    rooms.iter().filter(|room| file.starts_with(&room.path)).max_by_key(|room| room.path.len())
+}
+
+fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+#[test]
+fn the_map_has_every_arrow_and_no_other() {
+    let (house, rooms) = (House::new(&root()), rooms(&root()));
+    let mut wrong = Vec::new();
+    let mut used: BTreeSet<(&str, &str)> = BTreeSet::new();
+    for (file, arrows) in house.files.iter().zip(house.arrows()) {
+        let Some(room) = room_of(&rooms, &file.path) else {
+            wrong.push(format!("{} lies in no room of the map", file.path));
+            continue;
+        };
+        for to in arrows.into_iter().map(|to| &house.files[to].path) {
+            let Some(other) = room_of(&rooms, to).filter(|other| other.path != room.path) else { continue };
+            // `src/` stands for the whole library.
+            let named =
+                room.stands_on.iter().find(|named| **named == other.path || *named == "src/" && to.starts_with("src/"));
+            match named {
+                Some(named) => drop(used.insert((&room.path, named))),
+                None => wrong.push(format!(
+                    "{} imports from {to}, but {} does not stand on {}",
+                    file.path, room.path, other.path
+                )),
+            }
+        }
+    }
+    for room in &rooms {
+        assert!(root().join(&room.path).exists(), "the map names {}, which is not there", room.path);
+        let unused = room.stands_on.iter().filter(|on| !used.contains(&(room.path.as_str(), on.as_str())));
+        wrong.extend(
+            unused.map(|on| format!("the map says that {} stands on {on}, but nothing there imports it", room.path)),
+        );
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn no_files_import_each_other() {
+    let house = House::new(&root());
+    let arrows = house.arrows();
+    let reaches = |from: usize| {
+        let mut seen = BTreeSet::new();
+        let mut open: Vec<usize> = arrows[from].iter().copied().collect();
+        while let Some(next) = open.pop() {
+            if seen.insert(next) {
+                open.extend(&arrows[next]);
+            }
+        }
+        seen
+    };
+    let reached: Vec<BTreeSet<usize>> = (0..arrows.len()).map(reaches).collect();
+    let mut circles = Vec::new();
+    for (from, to) in arrows.iter().enumerate().flat_map(|(from, to)| to.iter().map(move |to| (from, *to))) {
+        if reached[to].contains(&from) {
+            circles.push(format!("{} -> {}", house.files[from].path, house.files[to].path));
+        }
+    }
+    assert!(circles.is_empty(), "these imports lie on circles:\n{}", circles.join("\n"));
+}
