@@ -3,8 +3,9 @@
 //! Read here and not by `tobj`, which gives up a whole file at the first bad number: the geometry is worth more than that, so
 //! whatever is wrong in an MTL file is a warning with its line.
 
-use super::map_options;
-use super::material::{DEFAULT_ETA, Draft, ETAS, LARGEST_EXPONENT, MapDraft};
+mod map_options;
+
+use super::draft::{DEFAULT_ETA, Draft, ETAS, LARGEST_EXPONENT, MapDraft};
 use super::text::{Tally, read_text, shortened};
 use crate::Result;
 use glam::Vec3;

@@ -1,7 +1,7 @@
 //! The image of an environment.
 
-use super::EnvironmentImage;
 use crate::picture::image_file::ImageFile;
+use crate::scene::EnvironmentImage;
 use glam::Vec3;
 use std::path::Path;
 

@@ -1,10 +1,11 @@
 //! What an OBJ file needs to become a picture, and does not say: a camera, and a light if next to nothing in it emits.
 
 use super::loader::Loader;
-use super::{
-    Estimator, FilmSettings, Filter, Integrator, Luminaire, Object, Projection, RenderSettings, Scene, Sensor, obj,
-};
+use super::obj;
 use crate::Result;
+use crate::scene::{
+    Estimator, FilmSettings, Filter, Integrator, Luminaire, Object, Projection, RenderSettings, Scene, Sensor, widen,
+};
 use glam::{Affine3A, DVec3, Vec3};
 use std::path::Path;
 
@@ -78,7 +79,7 @@ pub(super) fn load(path: &Path) -> Result<Scene> {
 fn emitting_share(scene: &Scene) -> f64 {
     let (mut emitting, mut all) = (0.0, 0.0);
     for object in &scene.objects {
-        let to_world = super::mesh::widen(object.object_to_world);
+        let to_world = widen(object.object_to_world);
         let mesh = &scene.meshes[object.mesh as usize];
         for triangle in &mesh.triangles {
             let [a, b, c] = triangle.vertices.map(|v| to_world.transform_point3(mesh.positions[v as usize].as_dvec3()));
@@ -103,7 +104,7 @@ pub(super) fn framing_sensor(scene: &Scene) -> Sensor {
     let center = 0.5 * (low + high);
     let mut radius: f64 = 0.0;
     for object in &scene.objects {
-        let to_world = super::mesh::widen(object.object_to_world);
+        let to_world = widen(object.object_to_world);
         for position in &scene.meshes[object.mesh as usize].positions {
             radius = radius.max(to_world.transform_point3(position.as_dvec3()).distance(center));
         }

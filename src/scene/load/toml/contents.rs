@@ -1,117 +1,22 @@
-//! Scene files in TOML; `scenes/README.md` describes the format.
+//! What a scene file puts into a scene: luminaires, materials, objects.
 
-use super::loader::Loader;
-use super::material::{Draft, DraftMaps, MapDraft};
-use super::text::{line_and_column, read_bytes, shortened};
-use super::texture::MapFile;
-use super::toml_tables::{LuminaireKind, LuminaireTable, MaterialTable, ObjectTable, Scale, SceneFile};
-use super::toml_values::Triple;
-use super::{Luminaire, Object, Projection, RenderSettings, Scene, Sensor, obj, preview};
+use super::file::File;
+use super::tables::{LuminaireKind, LuminaireTable, MaterialTable, ObjectTable, Scale};
+use super::values::Triple;
+use crate::scene::load::draft::{Draft, DraftMaps, MapDraft};
+use crate::scene::load::loader::Loader;
+use crate::scene::load::obj;
+use crate::scene::load::text::{line_and_column, shortened};
+use crate::scene::load::texture::MapFile;
+use crate::scene::{Luminaire, Object};
 use crate::{Error, Result};
 use ::toml::Spanned;
 use glam::{Affine3A, DAffine3, DMat3, DQuat, DVec3, Vec3};
 use std::collections::HashSet;
-use std::ops::Range;
-use std::path::{Path, PathBuf};
-
-/// Loads a scene file.
-pub(super) fn load(path: &Path) -> Result<Scene> {
-    let bytes = read_bytes(path)?;
-    let text = std::str::from_utf8(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes)).map_err(|error| {
-        let line = 1 + bytes[..error.valid_up_to()].iter().filter(|byte| **byte == b'\n').count();
-        Error::Parse { path: path.to_owned(), line, column: 0, message: "a scene file has to be UTF-8 text".into() }
-    })?;
-    let file = File { path, text };
-    let scene: SceneFile = ::toml::from_str(text)
-        .map_err(|error| file.error(error.span().unwrap_or(0..0), in_plain_words(error.message().trim())))?;
-    file.build(scene)
-}
-
-/// A scene file being turned into a [`Scene`].
-pub(super) struct File<'a> {
-    path: &'a Path,
-    text: &'a str,
-}
+use std::path::Path;
 
 impl File<'_> {
-    /// An error at a place of the scene file.
-    pub(super) fn error(&self, span: Range<usize>, message: impl Into<String>) -> Error {
-        let (line, column) = line_and_column(self.text, span.start);
-        Error::Parse { path: self.path.to_owned(), line, column, message: message.into() }
-    }
-
-    /// A warning about the scene file.
-    pub(super) fn warning(&self, message: &str) -> String {
-        format!("{}: {message}", self.path.display())
-    }
-
-    /// A file that the scene file names.
-    pub(super) fn beside(&self, name: &str) -> PathBuf {
-        self.folder().join(name)
-    }
-
-    fn folder(&self) -> &Path {
-        self.path.parent().unwrap_or(Path::new(""))
-    }
-
-    fn build(&self, file: SceneFile) -> Result<Scene> {
-        let film = self.film(file.film)?;
-        let integrator = self.integrator(&file.integrator)?;
-        let mut luminaires = Vec::new();
-        for table in file.luminaire {
-            luminaires.push(self.luminaire(&table)?);
-        }
-        let sensor = file.sensor.map(|table| self.sensor(&table)).transpose()?;
-        let mut loader = Loader::new(self.materials(&file.material)?);
-        let environment = match &file.environment {
-            None => None,
-            Some(table) => self.environment(table, &mut loader.warnings)?,
-        };
-        let mut objects = Vec::new();
-        for table in &file.object {
-            objects.push(self.object(table, &mut loader)?);
-        }
-        if objects.is_empty() {
-            return Err(Error::scene(self.path, "nothing to trace: the scene file has no [[object]]"));
-        }
-        let defaults = RenderSettings::default();
-        let settings = RenderSettings {
-            spp: file.render.spp.map_or(defaults.spp, |spp| spp.0),
-            seed: file.render.seed.unwrap_or(defaults.seed),
-            exposure: file.render.exposure.map_or(defaults.exposure, |exposure| exposure.0),
-            sampler: file.render.sampler.unwrap_or(defaults.sampler),
-        };
-        let (materials, textures) = loader.finish_materials(&objects);
-        let mut scene = Scene {
-            path: self.path.to_owned(),
-            meshes: loader.meshes,
-            objects,
-            materials,
-            textures,
-            luminaires,
-            environment,
-            sensor: Sensor {
-                position: Vec3::Z,
-                target: Vec3::ZERO,
-                up: Vec3::Y,
-                projection: Projection::Perspective { fov: 40.0 },
-                lens: None,
-            },
-            film,
-            integrator,
-            settings,
-            warnings: loader.warnings,
-        };
-        scene.sensor = sensor.unwrap_or_else(|| {
-            let sensor = preview::framing_sensor(&scene);
-            scene.warnings.push(self.warning("no [sensor]; the camera is placed to frame the scene"));
-            sensor
-        });
-        scene.warnings.extend(scene.dark_because());
-        Ok(scene)
-    }
-
-    fn luminaire(&self, table: &Spanned<LuminaireTable>) -> Result<Luminaire> {
+    pub(super) fn luminaire(&self, table: &Spanned<LuminaireTable>) -> Result<Luminaire> {
         let LuminaireTable { kind, position, intensity, direction, irradiance } = table.get_ref();
         match (kind, position, intensity, direction, irradiance) {
             (LuminaireKind::Point, Some(position), Some(intensity), None, None) => {
@@ -131,7 +36,7 @@ impl File<'_> {
         }
     }
 
-    fn materials(&self, tables: &[MaterialTable]) -> Result<Vec<Draft>> {
+    pub(super) fn materials(&self, tables: &[MaterialTable]) -> Result<Vec<Draft>> {
         let mut names = HashSet::new();
         let draft = |table: &MaterialTable| {
             let name = table.name.get_ref();
@@ -177,7 +82,7 @@ impl File<'_> {
         Ok(MapDraft::File(MapFile::plain(vec![name.get_ref().clone()], self.folder(), at)))
     }
 
-    fn object(&self, table: &Spanned<ObjectTable>, loader: &mut Loader) -> Result<Object> {
+    pub(super) fn object(&self, table: &Spanned<ObjectTable>, loader: &mut Loader) -> Result<Object> {
         let object = table.get_ref();
         let object_to_world = self.transform(table)?;
         let mesh_path = self.beside(object.mesh.get_ref());
@@ -239,18 +144,4 @@ impl File<'_> {
         }
         Ok(rounded)
     }
-}
-
-/// The parser's words for types, as TOML users know them.
-fn in_plain_words(message: &str) -> String {
-    let words = [
-        ("invalid type: map, expected a sequence", "one table, expected a list of them: write [[ ]] around its name"),
-        ("invalid type: map, expected", "a table (or a list of tables), expected"),
-        ("expected f64", "expected a number"),
-        ("expected f32", "expected a number"),
-        ("expected i64", "expected a whole number"),
-        ("expected u32", "expected a whole number from 0 to 4294967295"),
-        ("expected an array of length 3", "expected three numbers"),
-    ];
-    words.iter().fold(message.to_owned(), |text, (from, to)| text.replace(from, to))
 }

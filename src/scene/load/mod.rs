@@ -1,7 +1,16 @@
 //! From a path to a [`Scene`].
 
-use super::world::Scene;
-use super::{preview, toml};
+mod draft;
+mod environment;
+mod loader;
+mod mtl;
+mod obj;
+mod preview;
+mod text;
+mod texture;
+mod toml;
+
+use crate::scene::Scene;
 use crate::{Error, Result};
 use std::path::Path;
 

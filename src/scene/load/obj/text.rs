@@ -4,9 +4,9 @@
 //! takes `l` lines for faces, and wants every vertex coloured if one is. So each line is checked here first, and `tobj` receives
 //! plain `v`, `vt`, `vn`, `usemtl` and `f` lines with absolute, valid indices.
 
-use super::obj_faces::{Faces, Faults};
+use super::faces::{Faces, Faults};
 use super::polygon::MOST_CORNERS;
-use super::text::{Tally, shortened};
+use crate::scene::load::text::{Tally, shortened};
 use crate::{Error, Result};
 use glam::Vec3;
 use std::borrow::Cow;

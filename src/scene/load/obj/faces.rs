@@ -1,7 +1,7 @@
 //! The faces of an OBJ file, and the vertex normals that are made from them.
 
 use super::polygon::{self, Cut, Fault};
-use super::text::Tally;
+use crate::scene::load::text::Tally;
 use glam::{DVec3, Vec3};
 use std::collections::{BTreeMap, HashMap};
 use std::fmt::Write;

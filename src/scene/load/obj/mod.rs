@@ -1,12 +1,16 @@
 //! A mesh from an OBJ file, by `tobj`, which makes one vertex of each triple of position, texture coordinate and normal.
 
-use super::obj_text::{self, ObjText};
+mod faces;
+mod polygon;
+mod text;
+
 use super::text::read_text;
-use super::{Mesh, Triangle};
+use crate::scene::{Mesh, Triangle};
 use crate::{Error, Result};
 use glam::{DVec3, Vec2, Vec3};
 use std::io::Read;
 use std::path::Path;
+use text::ObjText;
 
 /// A mesh and the names it refers to.
 #[derive(Debug)]
@@ -30,7 +34,7 @@ pub(super) struct Obj {
 /// If the file cannot be read, a line of it is wrong, or no triangle is left.
 pub(super) fn read(path: &Path, smooth: Option<f32>) -> Result<Obj> {
     let ObjText { vertices, faces, materials, libraries, without_uv, mut warnings } =
-        obj_text::normalise(path, &read_text(path)?, smooth)?;
+        text::normalise(path, &read_text(path)?, smooth)?;
     let mut text = b"mtllib names\n".chain(vertices.as_bytes()).chain(faces.as_bytes());
     let names = |_: &Path| {
         let numbered = |index: usize| tobj::Material { name: index.to_string(), ..Default::default() };

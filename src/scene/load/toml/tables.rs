@@ -1,10 +1,10 @@
 //! The tables of a scene file, as `scenes/README.md` describes them.
 
-use super::toml_values::{
+use super::values::{
     Angle, Blades, Bounces, Colour, Eta, Exponent, Exposure, FilterRadius, Finite, Fov, NotNegative, Pixels, Positive,
     Probability, Samples, Triple, Unit,
 };
-use super::{AreaSampling, Directions, Extinction, Filter, LightSampling, Sampler};
+use crate::scene::{AreaSampling, Directions, Extinction, Filter, LightSampling, Sampler};
 use ::toml::Spanned;
 use serde::Deserialize;
 

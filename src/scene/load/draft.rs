@@ -1,7 +1,7 @@
 //! A material while it is still being read: what nobody has said yet is `None`.
 
 use super::texture::{MapFile, Textures};
-use super::{Maps, Material};
+use crate::scene::{Maps, Material};
 use glam::Vec3;
 use std::ops::RangeInclusive;
 

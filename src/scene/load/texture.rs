@@ -1,7 +1,7 @@
 //! Textures: which file a map means, what its options change, and the texels that both tracers see.
 
-use super::Texture;
 use crate::picture::image_file::{CHUNK, ImageFile};
+use crate::scene::Texture;
 use glam::Vec3;
 use half::f16;
 use rayon::prelude::*;

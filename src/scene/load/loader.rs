@@ -1,10 +1,11 @@
 //! What is loaded of a scene, mesh by mesh and material by material.
 
-use super::material::{Draft, DraftMaps};
+use super::draft::{Draft, DraftMaps};
 use super::text::shortened;
 use super::texture::Textures;
-use super::{Maps, Material, Mesh, Object, Texture, mtl, obj};
+use super::{mtl, obj};
 use crate::Result;
+use crate::scene::{Maps, Material, Mesh, Object, Texture};
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

@@ -1,11 +1,9 @@
 //! How a scene file is seen and rendered: film, sensor, environment, integrator.
 
-use super::toml::File;
-use super::toml_tables::{EnvironmentTable, FilmTable, IntegratorKind, IntegratorTable, SensorKind, SensorTable};
-use super::{
-    Environment, Estimator, EstimatorChanges, FilmSettings, Integrator, Lens, Projection, Sensor, environment_file,
-    preview,
-};
+use super::file::File;
+use super::tables::{EnvironmentTable, FilmTable, IntegratorKind, IntegratorTable, SensorKind, SensorTable};
+use crate::scene::load::{environment, preview};
+use crate::scene::{Environment, Estimator, EstimatorChanges, FilmSettings, Integrator, Lens, Projection, Sensor};
 use crate::{Error, Result};
 use ::toml::Spanned;
 use glam::{DVec3, Vec3};
@@ -126,7 +124,7 @@ impl File<'_> {
             None => None,
             Some(name) => {
                 let path = self.beside(name.get_ref());
-                let read = environment_file::read(&path, warnings);
+                let read = environment::read(&path, warnings);
                 match read.map_err(|reason| self.error(name.span(), Error::read(&path, reason).to_string()))? {
                     None => return Ok(None),
                     image => image,

@@ -1,6 +1,6 @@
 //! The options and the file name of an MTL texture statement.
 
-use super::texture::{Channel, MapFile};
+use crate::scene::load::texture::{Channel, MapFile};
 use std::path::Path;
 
 /// What a texture statement says.
