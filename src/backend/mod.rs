@@ -1,0 +1,9 @@
+//! Which tracer runs, on which device, and why.
+
+mod choice;
+mod devices;
+mod renderer;
+
+pub use choice::{Backend, Request};
+pub use devices::{DeviceReport, devices};
+pub use renderer::{Renderer, open};

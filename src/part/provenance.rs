@@ -1,0 +1,127 @@
+//! What was rendered.
+
+use crate::scene::Scene;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
+use std::fmt::Debug;
+
+/// What was rendered: everything on which the samples depend. Two files of the same provenance hold samples of the same picture.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Provenance {
+    /// The program's version.
+    pub version: String,
+    /// The scene file as it was named. Another name for the same scene makes no difference.
+    pub scene: String,
+    /// Width in pixels.
+    pub width: u32,
+    /// Height in pixels.
+    pub height: u32,
+    /// Seed of the random numbers.
+    pub seed: u32,
+    /// Where the random numbers come from.
+    pub sampler: String,
+    /// The estimator with its parameters.
+    pub integrator: String,
+    /// Digests of the rest of the scene, by name.
+    pub digests: BTreeMap<String, String>,
+    /// Exposure of a PNG in stops. Another one makes no difference.
+    pub exposure: f32,
+}
+
+impl Provenance {
+    /// That of a render of `scene`.
+    pub fn of(scene: &Scene) -> Self {
+        let digests = [
+            ("geometry", geometry(scene)),
+            (
+                "materials",
+                digest(|hash| {
+                    write(hash, &scene.materials);
+                    scene.textures.iter().for_each(|texture| {
+                        write(hash, &(texture.width, texture.height, texture.clamp));
+                        hash.update(bytemuck::cast_slice(&texture.texels));
+                    });
+                }),
+            ),
+            (
+                "luminaires",
+                digest(|hash| {
+                    write(hash, &scene.luminaires);
+                    if let Some(environment) = &scene.environment {
+                        write(hash, &(environment.radiance, environment.rotation));
+                        if let Some(image) = &environment.image {
+                            write(hash, &(image.width, image.height));
+                            image.texels.iter().for_each(|texel| floats(hash, &texel.to_array()));
+                        }
+                    }
+                }),
+            ),
+            ("camera", digest(|hash| write(hash, &scene.sensor))),
+            ("pixel filter", digest(|hash| write(hash, &(scene.film.filter, scene.film.filter_radius)))),
+        ];
+        Provenance {
+            version: env!("CARGO_PKG_VERSION").into(),
+            scene: scene.path.display().to_string(),
+            width: scene.film.width,
+            height: scene.film.height,
+            seed: scene.settings.seed,
+            sampler: format!("{:?}", scene.settings.sampler),
+            integrator: format!("{:?}", scene.integrator),
+            digests: digests.map(|(name, value)| (name.to_owned(), value)).into(),
+            exposure: scene.settings.exposure,
+        }
+    }
+
+    /// In what a render differs from another, of which this is the provenance; empty if their samples belong to one picture.
+    pub fn differences(&self, other: &Provenance) -> Vec<String> {
+        let mut found = Vec::new();
+        let mut compare = |what: &str, own: &dyn std::fmt::Display, others: &dyn std::fmt::Display| {
+            let (own, others) = (own.to_string(), others.to_string());
+            if own != others {
+                found.push(format!("{what} ({own} there, {others} here)"));
+            }
+        };
+        compare("version", &self.version, &other.version);
+        let size = |p: &Provenance| format!("{} x {}", p.width, p.height);
+        compare("size", &size(self), &size(other));
+        compare("seed", &self.seed, &other.seed);
+        compare("sampler", &self.sampler, &other.sampler);
+        compare("integrator", &self.integrator, &other.integrator);
+        let names = self.digests.keys().chain(other.digests.keys().filter(|name| !self.digests.contains_key(*name)));
+        found.extend(names.filter(|name| self.digests.get(*name) != other.digests.get(*name)).cloned());
+        found
+    }
+}
+
+/// The digest of whatever `feed` feeds, as hexadecimal digits.
+fn digest(feed: impl FnOnce(&mut Sha256)) -> String {
+    let mut hash = Sha256::new();
+    feed(&mut hash);
+    hash.finalize().iter().take(16).map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// Feeds a value as Rust shows it, with every digit of its numbers.
+fn write(hash: &mut Sha256, value: &impl Debug) {
+    hash.update(format!("{value:?}\n"));
+}
+
+fn floats(hash: &mut Sha256, values: &[f32]) {
+    values.iter().for_each(|value| hash.update(value.to_le_bytes()));
+}
+
+fn geometry(scene: &Scene) -> String {
+    digest(|hash| {
+        for mesh in &scene.meshes {
+            write(hash, &(mesh.positions.len(), mesh.normals.len(), mesh.uvs.len(), mesh.triangles.len()));
+            mesh.positions.iter().chain(&mesh.normals).for_each(|v| floats(hash, &v.to_array()));
+            mesh.uvs.iter().for_each(|v| floats(hash, &v.to_array()));
+            for triangle in &mesh.triangles {
+                triangle.vertices.iter().chain([&triangle.material]).for_each(|i| hash.update(i.to_le_bytes()));
+            }
+        }
+        for object in &scene.objects {
+            write(hash, &(object.mesh, object.object_to_world, object.material));
+        }
+    })
+}
