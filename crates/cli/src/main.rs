@@ -1,5 +1,7 @@
 //! The program `luminaire`: options, one call of the library, a message and an exit code. Results go to stdout, everything else to stderr.
 
+#![allow(rustdoc::invalid_html_tags, reason = "doc comments of options are their help, where <NAME> stands for a name")]
+
 mod backend_name;
 mod bench;
 mod compare;
@@ -28,6 +30,7 @@ use clap::{CommandFactory, Parser};
 use exit_codes::EXIT_CODES;
 use std::process::ExitCode;
 
+/// Before the exit codes in `--help`.
 const EXAMPLES: &str = "\
 Examples:
   luminaire render scenes/cornell/cornell.toml
@@ -42,6 +45,7 @@ Examples:
 
 ";
 
+// The program's name is not its package's, which clap would take.
 /// A Vulkan path tracer: ray queries or a compute-shader BVH, proved against a double-precision reference.
 #[derive(Debug, clap::Parser)]
 #[command(name = env!("CARGO_BIN_NAME"), version, after_help = format!("{EXAMPLES}{EXIT_CODES}"), subcommand_required = true)]
