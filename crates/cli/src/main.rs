@@ -1,32 +1,105 @@
-//! The command line: arguments, one library call, exit code and message.
+//! The program `luminaire`: options, one call of the library, a message and an exit code. Results go to stdout, everything else to stderr.
 
-mod cli;
+#![allow(rustdoc::invalid_html_tags, reason = "doc comments of options are their help, where <NAME> stands for a name")]
 
-use clap::Parser;
+mod backend_name;
+mod bench;
+mod compare;
+mod completions;
+mod devices;
+mod estimator;
+mod exit_codes;
+mod figures;
+mod film_size;
+mod inspect;
+mod interrupts;
+mod links;
+mod man;
+mod merge;
+mod printing;
+mod render;
+mod stability;
+mod table;
+mod values;
+mod view;
+
+#[cfg(test)]
+mod tests;
+
+use clap::{CommandFactory, Parser};
+use exit_codes::EXIT_CODES;
 use std::process::ExitCode;
 
+/// Before the exit codes in `--help`.
+const EXAMPLES: &str = "\
+Examples:
+  luminaire render scenes/cornell/cornell.toml
+  luminaire render model.obj -o model.png -o model.exr --spp 256
+  luminaire render model.obj -o model.png --checkpoint model.checkpoint.exr --resume
+  luminaire view model.obj
+  luminaire compare model.exr reference.exr
+  luminaire inspect model.obj
+  luminaire devices
+  luminaire stability --list
+  luminaire bench --quick
+
+";
+
+// The program's name is not its package's, which clap would take.
+/// A Vulkan path tracer: ray queries or a compute-shader BVH, proved against a double-precision reference.
+#[derive(Debug, clap::Parser)]
+#[command(name = env!("CARGO_BIN_NAME"), version, after_help = format!("{EXAMPLES}{EXIT_CODES}"), subcommand_required = true)]
+struct Args {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, clap::Subcommand)]
+enum Command {
+    /// Render a scene to PNG, EXR or HDR files.
+    Render(render::Options),
+    /// Join the parts of a render that --samples wrote.
+    Merge(merge::Options),
+    /// Show a scene in a window: the camera moves, and the picture gets better while it rests.
+    View(view::Options),
+    /// Tell how far a picture is from a reference, and whether that is within limits.
+    Compare(compare::Options),
+    /// List every Vulkan device, what it offers, and which backend it would run and why.
+    #[command(after_help = devices::HELP)]
+    Devices,
+    /// Show what was loaded from a scene, and every warning.
+    Inspect(inspect::Options),
+    /// Run methods over the ranges in which they can fail, on every backend here: charts, numbers, and a page.
+    Stability(stability::Options),
+    /// Measure speed against accuracy: scenes, backends and estimators side by side, as a page, charts and numbers.
+    Bench(bench::Options),
+    /// Print a script with which a shell completes subcommands, options and their values.
+    Completions(completions::Options),
+    /// Print the manual page, or write one page for each subcommand to a folder.
+    Man(man::Options),
+}
+
 fn main() -> ExitCode {
-    let args = cli::Args::parse();
-    let done = match &args.command {
-        cli::Command::Render(options) => cli::render::run(options),
-        cli::Command::View(options) => cli::view::run(options),
-        cli::Command::Merge(options) => cli::merge::run(options),
-        cli::Command::Compare(options) => cli::compare::run(options),
-        cli::Command::Devices => cli::devices::run(),
-        cli::Command::Inspect(options) => cli::inspect::run(&options.scene),
-        cli::Command::Stability(options) => cli::stability::run(options),
-        cli::Command::Bench(options) => cli::bench::run(options),
-        cli::Command::Completions(options) => cli::completions::run(options.shell),
-        cli::Command::Man(options) => cli::man::run(options.folder.as_deref()),
+    let result = match &Args::parse().command {
+        Command::Render(options) => render::run(options),
+        Command::Merge(options) => merge::run(options),
+        Command::View(options) => view::run(options),
+        Command::Compare(options) => compare::run(options),
+        Command::Devices => devices::run(),
+        Command::Inspect(options) => inspect::run(options),
+        Command::Stability(options) => stability::run(options),
+        Command::Bench(options) => bench::run(options),
+        Command::Completions(options) => completions::run(options, Args::command()),
+        Command::Man(options) => man::run(options, Args::command()),
     };
-    let code = done.unwrap_or_else(|error| {
-        cli::tell(&format!("error: {error}"));
+    let code = result.unwrap_or_else(|error| {
+        printing::error(&error);
         ExitCode::from(error.exit_code())
     });
     match luminaire::gpu::validation_messages() {
         0 => code,
         count => {
-            cli::tell(&format!("error: the Vulkan validation layer had {count} complaints; see above"));
+            printing::error(format_args!("the Vulkan validation layer had {count} complaints; see above"));
             ExitCode::FAILURE
         }
     }

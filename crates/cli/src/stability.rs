@@ -1,20 +1,58 @@
 //! `luminaire stability`.
 
-use super::progress::duration;
-use super::{StabilityOptions, print, table, tell};
+use crate::figures::duration;
+use crate::links::seen_from;
+use crate::printing::{self, note, print};
+use crate::table::table;
 use luminaire::files::{check_writable, save_text};
 use luminaire::{Error, Result};
 use luminaire_measure::Workbench;
 use luminaire_measure::stability::{Definition, Head, Outcome, SWEEPS, Sweep, named, page};
-use std::path::{Component, Path};
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
+
+/// What follows the options in `--help`.
+const HELP: &str = "\
+Examples:
+  luminaire stability --list
+  luminaire stability samples albedo
+  luminaire stability --out docs/stability --page docs/stability.md
+
+Without a Vulkan device the reference runs alone.
+
+Exit codes:
+  0    measured
+  1    a sweep failed (the others are written), or a file cannot be written
+  2    wrong usage: there is no such sweep
+  130  interrupted; the sweeps that are done are written, the page is not";
+
+/// Which sweeps to run, and where their files go.
+#[derive(Debug, clap::Args)]
+#[command(after_help = HELP)]
+pub struct Options {
+    /// Names of sweeps, as `--list` tells them [default: all].
+    #[arg(value_name = "SWEEP")]
+    sweeps: Vec<String>,
+    /// The folder for <SWEEP>.csv and <SWEEP>-<CHART>.svg; it is made if it is missing [default: stability].
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// The page that shows and explains the charts, in Markdown [default: README.md in the folder].
+    #[arg(long, value_name = "FILE")]
+    page: Option<PathBuf>,
+    /// Finer steps and more samples: about ten times as long.
+    #[arg(long)]
+    long: bool,
+    /// List the sweeps, and run none.
+    #[arg(long)]
+    list: bool,
+}
 
 /// Where the files go unless `--out` says otherwise.
 const FOLDER: &str = "stability";
 
 /// Runs the sweeps and writes what they found. One that fails does not stop the others.
-pub fn run(options: &StabilityOptions) -> Result<ExitCode> {
+pub fn run(options: &Options) -> Result<ExitCode> {
     if options.list {
         let rows: Vec<_> = SWEEPS.iter().map(|sweep| vec![sweep.name.into(), sweep.title.into()]).collect();
         print(&table(0, &rows))?;
@@ -36,16 +74,16 @@ pub fn run(options: &StabilityOptions) -> Result<ExitCode> {
     if !missing.is_empty() {
         ran += &format!(" (not here: {})", missing.join(", "));
     }
-    tell(&format!("{} sweeps on {ran}; {}", sweeps.len(), bench.device));
+    note(&format!("{} sweeps on {ran}; {}", sweeps.len(), bench.device));
 
     let mut outcomes: Vec<Outcome> = Vec::new();
     for (number, sweep) in sweeps.iter().enumerate() {
-        tell(&format!("{}/{} {}: {}", number + 1, sweeps.len(), sweep.name, sweep.title));
+        note(&format!("{}/{} {}: {}", number + 1, sweeps.len(), sweep.name, sweep.title));
         let began = Instant::now();
         let outcome = (sweep.run)(&bench).and_then(|done| write(&folder, sweep, &done).map(|()| done));
         match &outcome {
-            Ok(_) => tell(&format!("    done in {}", duration(began.elapsed().as_secs_f64()))),
-            Err(error) => tell(&format!("error: the sweep `{}` failed: {error}", sweep.name)),
+            Ok(_) => note(&format!("    done in {}", duration(began.elapsed().as_secs_f64()))),
+            Err(error) => printing::error(format_args!("the sweep `{}` failed: {error}", sweep.name)),
         }
         outcomes.push((*sweep, outcome));
     }
@@ -60,7 +98,7 @@ pub fn run(options: &StabilityOptions) -> Result<ExitCode> {
     let failed = outcomes.iter().filter(|(_, outcome)| outcome.is_err()).count();
     print(&format!("{} sweeps in {}: {}\n", sweeps.len(), duration(start.elapsed().as_secs_f64()), file.display()))?;
     if failed > 0 {
-        tell(&format!("error: {failed} of {} sweeps failed; the page has the others", sweeps.len()));
+        printing::error(format_args!("{failed} of {} sweeps failed; the page has the others", sweeps.len()));
         return Ok(ExitCode::FAILURE);
     }
     Ok(ExitCode::SUCCESS)
@@ -75,42 +113,11 @@ fn write(folder: &Path, sweep: &Definition, done: &Sweep) -> Result<()> {
 }
 
 /// The command that makes the page again.
-fn command(options: &StabilityOptions) -> String {
+fn command(options: &Options) -> String {
     let mut words = vec!["luminaire stability".to_owned()];
     words.extend(options.sweeps.iter().cloned());
     words.extend(options.out.iter().map(|path| format!("--out {}", path.display())));
     words.extend(options.page.iter().map(|path| format!("--page {}", path.display())));
     words.extend(options.long.then(|| "--long".to_owned()));
     words.join(" ")
-}
-
-/// How a page names a folder: relative to its own, with slashes, so that both can be moved together.
-pub(super) fn seen_from(page: &Path, folder: &Path) -> String {
-    let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-    let (page, folder) = (absolute(page), absolute(folder));
-    let here = page.parent().unwrap_or(Path::new("/"));
-    let parts = |path: &Path| -> Vec<String> {
-        let named = path.components().filter(|part| *part != Component::CurDir);
-        named.map(|part| part.as_os_str().to_string_lossy().into_owned()).collect()
-    };
-    let (here, there) = (parts(here), parts(&folder));
-    let shared = here.iter().zip(&there).take_while(|(a, b)| a == b).count();
-    let up = std::iter::repeat_n("..", here.len() - shared).map(str::to_owned);
-    let way: Vec<String> = up.chain(there[shared..].iter().cloned()).collect();
-    if way.is_empty() { ".".into() } else { way.join("/") }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn pages_find_their_charts() {
-        let seen = |page: &str, folder: &str| seen_from(Path::new(page), Path::new(folder));
-        assert_eq!(seen("docs/stability.md", "docs/stability"), "stability");
-        assert_eq!(seen("stability/README.md", "stability"), ".");
-        assert_eq!(seen("a/b/page.md", "c/d"), "../../c/d");
-        assert_eq!(seen("./page.md", "./d/"), "d");
-        assert_eq!(seen("/x/page.md", "/y"), "../y");
-    }
 }

@@ -1,8 +1,8 @@
-//! The estimator's options and its description.
+//! The options of the estimator and of its random numbers.
 
 use luminaire::glam::Vec3;
 use luminaire::scene::{
-    AreaSampling, Directions, Estimator, EstimatorChanges, Extinction, Integrator, LightSampling, Sampler,
+    AreaSampling, Directions, Estimator, EstimatorChanges, Extinction, Integrator, LightSampling, Sampler, Scene,
 };
 use luminaire::{Error, Result};
 use serde::Deserialize;
@@ -117,8 +117,22 @@ impl EstimatorOptions {
         }
     }
 
+    /// Puts the options in the place of the scene's estimator and sampler. A usage error if they do not fit the scene's integrator.
+    pub fn apply(&self, scene: &mut Scene) -> Result<()> {
+        // Whether the picture can only be black depends on the estimator.
+        let dark = scene.dark_because();
+        scene.warnings.extend(self.change(&mut scene.integrator)?);
+        scene.settings.sampler = self.sampler.unwrap_or(scene.settings.sampler);
+        let now = scene.dark_because();
+        if now != dark {
+            scene.warnings.retain(|warning| Some(warning) != dark.as_ref());
+            scene.warnings.extend(now);
+        }
+        Ok(())
+    }
+
     /// Puts the options in the place of what the scene says; gives what deserves a warning.
-    pub fn apply(&self, integrator: &mut Integrator) -> Result<Option<String>> {
+    fn change(&self, integrator: &mut Integrator) -> Result<Option<String>> {
         let mut warning = None;
         match (self.estimator, &*integrator) {
             (None, _) | (Some(Choice::Simple), Integrator::Simple { .. }) => {}
@@ -149,55 +163,6 @@ impl EstimatorOptions {
     }
 }
 
-/// The integrator in plain words: the preset's name, if there is one, and every part.
-pub fn describe(integrator: &Integrator) -> String {
-    let estimator = match integrator {
-        Integrator::Simple { ambient } => {
-            return format!(
-                "simple ray tracer: direct light and ambient radiance ({} {} {})",
-                ambient.x, ambient.y, ambient.z
-            );
-        }
-        Integrator::Path(estimator) => estimator,
-    };
-    // A limit of bounces is no other estimator.
-    let unlimited = Estimator { max_bounces: None, ..*estimator };
-    let preset = Estimator::preset_names().find(|name| Estimator::preset(name) == Some(unlimited));
-    let preset = preset.map_or(String::new(), |name| format!(", estimator `{name}`"));
-    let light = match estimator.light_sampling {
-        LightSampling::None => "light found by chance alone",
-        LightSampling::Direct => "light sampled",
-        LightSampling::Mis => "light sampled and found by chance",
-    };
-    let area = match (estimator.light_sampling, estimator.area_sampling) {
-        (LightSampling::None, _) => "",
-        (_, AreaSampling::Area) => ", lamps by area",
-        (_, AreaSampling::SolidAngle) => ", near lamps by solid angle",
-    };
-    let directions = match estimator.directions {
-        Directions::Uniform => "uniform directions",
-        Directions::Cosine => "cosine-distributed directions",
-        Directions::Bsdf => "directions by the BSDF",
-    };
-    let extinction = match estimator.extinction {
-        Extinction::Off => "no extinction",
-        Extinction::Literal => "extinction by the surface, not re-weighted",
-        Extinction::Surface => "extinction by the surface",
-        Extinction::Throughput => "Russian roulette",
-    };
-    let threshold = match estimator.albedo_threshold {
-        Some(threshold) => format!(", ends below a combined albedo of {threshold}"),
-        None => String::new(),
-    };
-    let bounces = match estimator.max_bounces {
-        None => "any number of bounces".into(),
-        Some(0) => "direct light only".into(),
-        Some(1) => "at most 1 indirect bounce".into(),
-        Some(n) => format!("at most {n} indirect bounces"),
-    };
-    format!("path tracer{preset}: {light}{area}, {directions}, {extinction}{threshold}, {bounces}")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -208,7 +173,7 @@ mod tests {
         let matches = command.try_get_matches_from(std::iter::once(&"test").chain(words)).unwrap();
         let options = EstimatorOptions::from_arg_matches(&matches).unwrap();
         options.check()?;
-        let warning = options.apply(&mut integrator)?;
+        let warning = options.change(&mut integrator)?;
         Ok((integrator, warning.is_some()))
     }
 
@@ -279,14 +244,5 @@ mod tests {
         for name in listed {
             assert!(estimator(name).is_ok(), "{name}");
         }
-    }
-
-    #[test]
-    fn presets_are_recognised() {
-        let cosine = Estimator::preset("cosine").unwrap();
-        let said = describe(&Integrator::Path(Estimator { max_bounces: Some(4), ..cosine }));
-        assert!(said.contains("`cosine`") && said.contains("at most 4 indirect bounces"), "{said}");
-        let said = describe(&Integrator::Path(Estimator { extinction: Extinction::Throughput, ..cosine }));
-        assert!(!said.contains('`') && said.contains("Russian roulette"), "{said}");
     }
 }

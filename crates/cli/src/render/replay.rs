@@ -1,6 +1,8 @@
 //! `luminaire render --pixel X,Y --sample N`: one sample again, ray by ray.
 
-use super::{print, table};
+use crate::printing::print;
+use crate::table::table;
+use crate::values::Pixel;
 use luminaire::Result;
 use luminaire::backend::{Backend, Renderer};
 use luminaire::film::{Batch, Tile};
@@ -11,7 +13,7 @@ use luminaire::scene::Scene;
 use std::process::ExitCode;
 
 /// Prints the path of a sample in the reference, and its radiance there and on the backend.
-pub fn run(scene: &Scene, renderer: &mut Renderer, [x, y]: [u32; 2], sample: u32) -> Result<ExitCode> {
+pub fn run(scene: &Scene, renderer: &mut Renderer, Pixel { x, y }: Pixel, sample: u32) -> Result<ExitCode> {
     let (radiance, vertices) = Reference::new(scene).vertices(y * scene.film.width + x, sample);
     let mut text =
         format!("pixel {x},{y}, sample {sample}, seed {}; the path in the reference\n\n", scene.settings.seed);

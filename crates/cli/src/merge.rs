@@ -1,12 +1,43 @@
 //! `luminaire merge`.
 
-use super::progress::percent;
-use super::{MergeOptions, print};
+use crate::figures::percent;
+use crate::printing::print;
+use crate::values::stops;
 use luminaire::{Error, Result, files, part, picture};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
+/// What follows the options in `--help`.
+const HELP: &str = "\
+Examples:
+  luminaire merge part-*.exr -o picture.png -o picture.exr
+      the picture of a render that was divided by --samples 0..64, 64..128, ...
+
+The parts must be of the same scene, size, seed, estimator and version, and hold every sample from number 0 on once. The picture is the one of a single
+render, but for rounding (1e-6 of each number at most).
+
+Exit codes:
+  0  merged
+  1  a file cannot be read or written
+  2  wrong usage: samples are missing or doubled, a part is not finished, or of another render";
+
+/// What to join.
+#[derive(Debug, clap::Args)]
+#[command(after_help = HELP)]
+pub struct Options {
+    /// Files of `luminaire render --samples`, in any order.
+    #[arg(required = true, value_name = "PART")]
+    parts: Vec<PathBuf>,
+    /// A file to write; .png, .exr or .hdr says the format. May be given several times.
+    #[arg(short, long, required = true, value_name = "FILE")]
+    output: Vec<PathBuf>,
+    /// Exposure of a PNG in stops [default: that of the parts].
+    #[arg(long, value_name = "STOPS", allow_negative_numbers = true, value_parser = stops)]
+    exposure: Option<f32>,
+}
+
 /// Joins parts of a render, and writes the picture.
-pub fn run(options: &MergeOptions) -> Result<ExitCode> {
+pub fn run(options: &Options) -> Result<ExitCode> {
     for (i, path) in options.output.iter().enumerate() {
         if options.output[..i].contains(path) {
             return Err(Error::Usage(format!("-o {} is given twice", path.display())));

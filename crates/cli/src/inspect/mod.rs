@@ -1,16 +1,41 @@
 //! `luminaire inspect`.
 
-use super::inspect_tables::{luminaires, materials, meshes, objects, rgb, textures};
-use super::{estimator, print, table};
+mod integrator;
+mod tables;
+
+use self::tables::{luminaires, materials, meshes, objects, rgb, textures};
+use crate::printing::print;
+use crate::table::table;
 use luminaire::Result;
 use luminaire::gpu::model::KernelModel;
 use luminaire::scene::{self, Environment, Mesh, Projection, Scene};
-use std::path::Path;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
+/// What follows the options in `--help`.
+const HELP: &str = "\
+Examples:
+  luminaire inspect scenes/textures/textures.toml
+      objects, materials, textures and luminaires, what the kernel will model, the memory that this takes, and every warning
+  luminaire inspect model.obj
+      the camera and the light that were found for it, too
+
+Exit codes:
+  0  the scene can be loaded, with or without warnings
+  1  it cannot: a file is missing or wrong; `error:` on stderr says where and what to do
+  2  wrong usage";
+
+/// What to inspect.
+#[derive(Debug, clap::Args)]
+#[command(after_help = HELP)]
+pub struct Options {
+    /// A scene file (.toml) or any OBJ file.
+    scene: PathBuf,
+}
+
 /// Loads a scene and prints what is in it.
-pub fn run(path: &Path) -> Result<ExitCode> {
-    print(&describe(&scene::load(path)?))?;
+pub fn run(options: &Options) -> Result<ExitCode> {
+    print(&describe(&scene::load(&options.scene)?))?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -46,7 +71,7 @@ fn describe(scene: &Scene) -> String {
                 ),
             ),
             row("environment", scene.environment.as_ref().map_or("none".into(), environment)),
-            row("integrator", estimator::describe(&scene.integrator)),
+            row("integrator", integrator::describe(&scene.integrator)),
             row(
                 "render",
                 format!(

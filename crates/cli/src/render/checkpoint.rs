@@ -1,11 +1,12 @@
-//! `--checkpoint`, `--resume`, `--samples`: renders that lose nothing, and parts of renders.
+//! `--checkpoint` and `--resume`: renders that lose nothing.
 
-use super::{RenderOptions, tell};
+use super::options::Options;
+use super::outputs::is_exr;
+use crate::printing::Notes;
 use luminaire::part::{self, Provenance};
 use luminaire::render::Rendered;
 use luminaire::scene::Scene;
-use luminaire::{Error, Result, files, picture};
-use std::ops::Range;
+use luminaire::{Error, Result, files};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -15,31 +16,29 @@ pub struct Checkpoint<'a> {
     provenance: Provenance,
     every: Duration,
     due: Instant,
-    quiet: bool,
+    notes: Notes,
 }
 
 impl<'a> Checkpoint<'a> {
     /// What `--checkpoint` asks for.
-    pub fn of(options: &'a RenderOptions, scene: &Scene) -> Option<Self> {
+    pub fn of(options: &'a Options, scene: &Scene, notes: Notes) -> Option<Self> {
         let every = Duration::from_secs_f64(options.checkpoint_every);
         Some(Checkpoint {
             path: options.checkpoint.as_deref()?,
             provenance: Provenance::of(scene),
             every,
             due: Instant::now() + every,
-            quiet: options.quiet,
+            notes,
         })
     }
 
-    /// Saves the render if it is time to. A failure costs nothing but this save, and is told.
+    /// Saves the render if it is time to. A failure costs nothing but this save, and is a warning.
     pub fn update(&mut self, rendered: &Rendered) {
         if Instant::now() < self.due {
             return;
         }
-        if let Err(error) = self.save(rendered)
-            && !self.quiet
-        {
-            tell(&format!("warning: {error}; the render goes on, and the checkpoint is tried again"));
+        if let Err(error) = self.save(rendered) {
+            self.notes.warn(format_args!("{error}; the render goes on, and the checkpoint is tried again"));
         }
         // Counted from the end, so that a slow disk does not keep the render from going on.
         self.due = Instant::now() + self.every;
@@ -51,30 +50,21 @@ impl<'a> Checkpoint<'a> {
     }
 }
 
-/// Everything else that is written.
-fn others_outputs(options: &RenderOptions) -> Vec<&Path> {
+/// The pictures that are written besides.
+fn pictures(options: &Options) -> Vec<&Path> {
     let paths = options.output.iter().map(PathBuf::as_path);
     #[cfg(feature = "denoise")]
     let paths = paths.chain(options.denoised.as_deref());
     paths.collect()
 }
 
-/// Checks the options that concern parts and checkpoints, before anything is loaded.
-pub fn check(options: &RenderOptions) -> Result<()> {
-    let is_exr = |path: &Path| matches!(picture::Format::of(path), Ok(picture::Format::Exr));
-    if options.samples.is_some() && !options.output.iter().any(|path| is_exr(path)) {
-        return Err(Error::Usage(
-            "--samples renders a part, which only an EXR file holds: say which with -o PART.exr".into(),
-        ));
-    }
-    if options.aov && !options.output.iter().any(|path| is_exr(path)) {
-        return Err(Error::Usage("--aov adds layers, which only an EXR file holds: name one with -o FILE.exr".into()));
-    }
+/// Checks the options that concern checkpoints, before anything is loaded.
+pub fn check(options: &Options) -> Result<()> {
     let Some(path) = &options.checkpoint else { return Ok(()) };
     if !is_exr(path) {
         return Err(Error::Usage(format!("--checkpoint {}: the name must end in .exr", path.display())));
     }
-    if others_outputs(options).iter().any(|output| files::same_file(output, path)) {
+    if pictures(options).iter().any(|output| files::same_file(output, path)) {
         return Err(Error::Usage(format!("--checkpoint {}: the picture itself is written there", path.display())));
     }
     if exists(path)? && !options.resume {
@@ -87,15 +77,15 @@ pub fn check(options: &RenderOptions) -> Result<()> {
 }
 
 /// What the render begins with: what the checkpoint holds, or nothing.
-pub fn begin(options: &RenderOptions, scene: &Scene, say: &dyn Fn(&str)) -> Result<Rendered> {
+pub fn begin(options: &Options, scene: &Scene, notes: Notes) -> Result<Rendered> {
     let first = options.samples.as_ref().map_or(0, |samples| samples.start);
     let size = (scene.film.width, scene.film.height);
     let Some(path) = options.checkpoint.as_deref().filter(|_| options.resume) else {
         return Rendered::nothing(size, first);
     };
-    others_outputs(options).into_iter().chain([path]).for_each(files::remove_left_over);
+    pictures(options).into_iter().chain([path]).for_each(files::remove_left_over);
     if !exists(path)? {
-        say(&format!("{}: no checkpoint yet; starting anew", path.display()));
+        notes.note(&format!("{}: no checkpoint yet; starting anew", path.display()));
         return Rendered::nothing(size, first);
     }
     let rendered = part::resume(path, scene)?;
@@ -109,7 +99,7 @@ pub fn begin(options: &RenderOptions, scene: &Scene, say: &dyn Fn(&str)) -> Resu
             ),
         ));
     }
-    say(&format!(
+    notes.note(&format!(
         "{}: going on from {:.4} samples a pixel, after {:.1} s",
         path.display(),
         rendered.progress.spp(),
@@ -121,12 +111,4 @@ pub fn begin(options: &RenderOptions, scene: &Scene, say: &dyn Fn(&str)) -> Resu
 /// Whether there is a file. Not to know is an error: a file that cannot be seen for a moment must not be overwritten.
 fn exists(path: &Path) -> Result<bool> {
     path.try_exists().map_err(|e| Error::read(path, e))
-}
-
-/// Reads `A..B`.
-pub fn range(text: &str) -> std::result::Result<Range<u32>, String> {
-    let range = text.split_once("..").and_then(|(a, b)| Some(a.trim().parse().ok()?..b.trim().parse().ok()?));
-    range.filter(|range: &Range<u32>| range.start < range.end).ok_or_else(|| {
-        "expected the numbers of the first sample and of the one after the last, for example 0..64 or 64..128".into()
-    })
 }

@@ -1,6 +1,7 @@
 //! How far a render is: a bar on a terminal, plain lines elsewhere.
 
-use super::tell;
+use crate::figures::{duration, percent};
+use crate::printing::note;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use luminaire::render::Progress;
 use std::io::IsTerminal;
@@ -11,7 +12,7 @@ const STEPS: u64 = 1000;
 /// Seconds between two plain lines.
 const LINE_SECONDS: f64 = 10.0;
 
-/// Tells about progress on stderr.
+/// Shows progress on stderr.
 pub enum Reporter {
     /// Nothing.
     Quiet,
@@ -46,7 +47,7 @@ impl Reporter {
             Reporter::Lines(due) => {
                 if progress.seconds >= *due {
                     *due = progress.seconds + LINE_SECONDS;
-                    tell(&format!("{:>3.0}%  {}", progress.fraction() * 100.0, describe(progress)));
+                    note(&format!("{:>3.0}%  {}", progress.fraction() * 100.0, describe(progress)));
                 }
             }
         }
@@ -68,26 +69,6 @@ fn describe(progress: &Progress) -> String {
     format!("{:.1}{of} samples a pixel, {:.2} Mrays/s{error}{left}", progress.spp(), progress.mrays_per_second())
 }
 
-/// A share in per cent, with two digits that count.
-pub fn percent(share: f64) -> String {
-    let percent = 100.0 * share;
-    let digits = if percent > 0.0 { (1.0 - percent.log10().floor()).clamp(0.0, 6.0) as usize } else { 0 };
-    format!("{percent:.digits$} %")
-}
-
-/// Seconds in words: `0.42 s`, `42 s`, `3 min 5 s`, `2 h 10 min`.
-pub fn duration(seconds: f64) -> String {
-    if seconds < 9.95 {
-        return format!("{seconds:.2} s");
-    }
-    let whole = seconds.round() as u64;
-    match whole {
-        0..60 => format!("{whole} s"),
-        60..3600 => format!("{} min {} s", whole / 60, whole % 60),
-        _ => format!("{} h {} min", whole / 3600, whole / 60 % 60),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -95,8 +76,7 @@ mod tests {
     use luminaire::render::Limits;
 
     #[test]
-    fn words() {
-        assert_eq!([0.42, 42.4, 185.0, 7800.0].map(duration), ["0.42 s", "42 s", "3 min 5 s", "2 h 10 min"]);
+    fn lines_say_how_far_how_fast_and_how_good() {
         let limits = Limits { spp: Some(64), seconds: None, noise: None };
         let progress =
             Progress { samples: 1600, pixels: 100, rays: 6_000_000, seconds: 2.0, limits, ..Progress::default() };
@@ -105,7 +85,5 @@ mod tests {
         let limits = Limits { noise: Some(0.125), ..limits };
         let with_error = Progress { limits, error, ..progress };
         assert_eq!(describe(&with_error), "16.0 of 64 samples a pixel, 3.00 Mrays/s, error 25 %, 6.00 s left");
-        let words = [0.0, 0.000_123, 0.0123, 0.0999, 0.123, 4.56].map(percent);
-        assert_eq!(words, ["0 %", "0.012 %", "1.2 %", "10.0 %", "12 %", "456 %"]);
     }
 }

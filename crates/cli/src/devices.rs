@@ -1,9 +1,23 @@
 //! `luminaire devices`.
 
-use super::{print, table, tell};
+use crate::printing::{self, print};
+use crate::table::table;
 use luminaire::Result;
 use luminaire::backend::{self, DeviceReport};
 use std::process::ExitCode;
+
+/// What follows the options in `--help`.
+pub const HELP: &str = "\
+Examples:
+  luminaire devices
+      every device, what it offers, and the backend that `luminaire render` would take there
+  luminaire render model.obj --device llvmpipe
+      renders on the one whose name contains this
+
+Exit codes:
+  0  at least one device is usable
+  1  none is; what to install is told
+  2  wrong usage";
 
 /// What to do where no device is usable.
 const ADVICE: &str = "\
@@ -20,7 +34,7 @@ pub fn run() -> Result<ExitCode> {
     let devices = match backend::devices() {
         Ok(devices) => devices,
         Err(error) => {
-            tell(&format!("error: {error}\n{ADVICE}"));
+            printing::error(format_args!("{error}\n{ADVICE}"));
             return Ok(ExitCode::FAILURE);
         }
     };
@@ -28,7 +42,7 @@ pub fn run() -> Result<ExitCode> {
     if devices.iter().any(|device| device.backend.is_ok()) {
         return Ok(ExitCode::SUCCESS);
     }
-    tell(&format!("error: there is no usable Vulkan device\n{ADVICE}"));
+    printing::error(format_args!("there is no usable Vulkan device\n{ADVICE}"));
     Ok(ExitCode::FAILURE)
 }
 

@@ -1,31 +1,61 @@
 //! `luminaire man`: manual pages, from the definition that `--help` shows.
 
-use super::{Args, print};
-use clap::{Command, CommandFactory};
+use crate::printing::print;
+use clap::Command;
 use clap_mangen::Man;
 use clap_mangen::roff::{Roff, bold, roman};
 use luminaire::files::save_text;
 use luminaire::{Error, Result};
-use std::path::Path;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// A manual page.
-struct Page {
-    /// The name of its file.
-    name: String,
-    /// roff.
-    text: String,
+/// What follows the options in `--help`.
+const HELP: &str = "\
+Examples:
+  luminaire man | man -l -
+      reads the manual page
+  luminaire man ~/.local/share/man/man1
+      installs all of them for yourself: then `man luminaire-render`
+
+Exit codes:
+  0  printed or written
+  1  a page cannot be written
+  2  wrong usage";
+
+/// Where to.
+#[derive(Debug, clap::Args)]
+#[command(after_help = HELP)]
+pub struct Options {
+    /// The folder for luminaire.1, luminaire-render.1 and so on; it is made if it is missing [default: only luminaire.1, to standard output].
+    #[arg(value_name = "DIR")]
+    folder: Option<PathBuf>,
 }
 
-/// Prints the page of the program, or writes all pages to a folder.
-pub fn run(folder: Option<&Path>) -> Result<ExitCode> {
-    let (main, others) = pages();
-    let Some(folder) = folder else {
-        print(&main.text)?;
+/// The page of the program, and those of its subcommands.
+pub struct Pages {
+    /// luminaire.1.
+    pub program: Page,
+    /// luminaire-render.1 and so on.
+    pub subcommands: Vec<Page>,
+}
+
+/// A manual page.
+pub struct Page {
+    /// The name of its file.
+    pub name: String,
+    /// roff.
+    pub text: String,
+}
+
+/// Prints the page of the program, or writes all pages to a folder; `program` is the definition of all options.
+pub fn run(options: &Options, program: Command) -> Result<ExitCode> {
+    let pages = pages(program);
+    let Some(folder) = &options.folder else {
+        print(&pages.program.text)?;
         return Ok(ExitCode::SUCCESS);
     };
     std::fs::create_dir_all(folder).map_err(|e| Error::write(folder, format!("the folder cannot be made ({e})")))?;
-    for page in std::iter::once(main).chain(others) {
+    for page in std::iter::once(pages.program).chain(pages.subcommands) {
         let path = folder.join(page.name);
         save_text(&path, &page.text)?;
         print(&format!("{}\n", path.display()))?;
@@ -33,11 +63,11 @@ pub fn run(folder: Option<&Path>) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The page of the program, and one for each subcommand.
-fn pages() -> (Page, Vec<Page>) {
-    let mut program = Args::command().disable_help_subcommand(true);
+/// All pages.
+pub fn pages(program: Command) -> Pages {
+    let mut program = program.disable_help_subcommand(true);
     program.build();
-    (page(&program), program.get_subcommands().map(page).collect())
+    Pages { program: page(&program), subcommands: program.get_subcommands().map(page).collect() }
 }
 
 fn page(command: &Command) -> Page {
@@ -76,34 +106,4 @@ fn end(command: &Command) -> Roff {
         roff.control("SH", ["SEE ALSO"]).text([bold("luminaire"), roman("(1)")]);
     }
     roff
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_subcommand_has_a_page_with_examples_and_exit_codes() {
-        let (main, others) = pages();
-        let subcommands: Vec<_> = Args::command().get_subcommands().map(|c| c.get_name().to_owned()).collect();
-        assert_eq!(main.name, "luminaire.1");
-        assert_eq!(
-            others.iter().map(|page| page.name.clone()).collect::<Vec<_>>(),
-            subcommands.iter().map(|name| format!("luminaire-{name}.1")).collect::<Vec<_>>()
-        );
-        for page in others.iter().chain([&main]) {
-            for section in ["NAME", "SYNOPSIS", "DESCRIPTION", "EXAMPLES", "\"EXIT STATUS\""] {
-                assert_eq!(page.text.matches(&format!("\n.SH {section}\n")).count(), 1, "{} {section}", page.name);
-            }
-            let (_, status) = page.text.split_once("EXIT STATUS").unwrap();
-            for code in ["\n  0 ", "\n  1 ", "\n  2 "] {
-                assert!(status.contains(code), "{}: {code:?} in\n{status}", page.name);
-            }
-        }
-        for name in &subcommands {
-            assert!(main.text.contains(&format!("luminaire\\-{name}(1)")), "{name} in\n{}", main.text);
-        }
-        let render = &others[subcommands.iter().position(|name| name == "render").unwrap()].text;
-        assert!(render.contains("\\-\\-backend") && render.contains("ray\\-query"), "{render}");
-    }
 }

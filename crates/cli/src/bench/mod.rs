@@ -1,0 +1,181 @@
+//! `luminaire bench`.
+
+mod baseline;
+mod options;
+
+pub use self::options::Options;
+
+use crate::backend_name::BackendName;
+use crate::figures::duration;
+use crate::interrupts;
+use crate::links::seen_from;
+use crate::printing::{self, Notes, note, print, warn};
+use luminaire::files::{check_writable, save_text};
+use luminaire::picture;
+use luminaire::{Error, Result};
+use luminaire_measure::Workbench;
+use luminaire_measure::bench::{
+    Baseline, BenchScene, Definition, Effort, Machine, Outcome, Report, STANDARD, Settings, file_name, html, markdown,
+    named,
+};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Instant;
+
+/// Where the files go unless `--out` says otherwise.
+const FOLDER: &str = "bench";
+
+/// What is measured where no scene is given: diffuse surfaces under one lamp; instances; small lamps; textures and holes.
+const SCENES: [&str; 4] = ["cornell", "instances", "lamps", "textures"];
+
+/// So many of them are enough to see that it works.
+const QUICK_SCENES: usize = 2;
+
+/// Measures, writes, and compares.
+pub fn run(options: &Options) -> Result<ExitCode> {
+    let sections = named(&options.sections)?;
+    let folder = options.out.clone().unwrap_or_else(|| FOLDER.into());
+    let baseline = options.baseline.as_deref().map(Baseline::read).transpose()?;
+    let same =
+        |path: &Path| path.canonicalize().is_ok_and(|p| folder.join("bench.json").canonicalize().is_ok_and(|q| p == q));
+    if options.baseline.as_deref().is_some_and(same) {
+        return Err(Error::Usage(format!(
+            "--baseline is the file that this run would write into {}: give another folder by --out, or copy the file elsewhere first",
+            folder.display()
+        )));
+    }
+    let mut settings = settings(options, &sections)?;
+    std::fs::create_dir_all(&folder).map_err(|e| Error::write(&folder, format!("the folder cannot be made ({e})")))?;
+    check_writable(&folder.join("index.html"))?;
+    options.page.as_deref().map(check_writable).transpose()?;
+    interrupts::listen(Notes { quiet: false })?;
+
+    let start = Instant::now();
+    let bench = Workbench::new(settings.effort == Effort::Long)?;
+    settings.backends = backends(options, &bench)?;
+    let machine = Machine::new(&bench, &settings);
+    note(&format!("{} sections on {}; {}", sections.len(), machine.backends.join(", "), machine.device));
+    if let Some(baseline) = &baseline {
+        let nothing = Report::new(options.command(), &settings, machine.clone(), vec![]);
+        baseline.warnings(&nothing).iter().for_each(|warning| warn(format_args!("--baseline: {warning}")));
+    }
+
+    let mut outcomes: Vec<Outcome> = Vec::new();
+    for (number, section) in sections.iter().enumerate() {
+        note(&format!("{}/{} {}: {}", number + 1, sections.len(), section.name, section.title));
+        let began = Instant::now();
+        let outcome = (section.run)(&bench, &settings, &mut |line| note(&format!("    {line}")));
+        match &outcome {
+            Ok(_) => note(&format!("    done in {}", duration(began.elapsed().as_secs_f64()))),
+            Err(error) => printing::error(format_args!("the section `{}` failed: {error}", section.name)),
+        }
+        outcomes.push((*section, outcome));
+    }
+    let report = Report::new(options.command(), &settings, machine, outcomes);
+    interrupts::hold_off(|| write(options, &folder, &report))?;
+
+    let page = folder.join("index.html");
+    print(&format!(
+        "{} sections in {}: {}\n",
+        sections.len(),
+        duration(start.elapsed().as_secs_f64()),
+        page.display()
+    ))?;
+    let failed = report.outcomes.iter().filter(|(_, outcome)| outcome.is_err()).count();
+    if failed > 0 {
+        printing::error(format_args!("{failed} of {} sections failed; the page has the others", sections.len()));
+    }
+    let mut worse = 0;
+    if let (Some(baseline), Some(path)) = (&baseline, &options.baseline) {
+        worse = baseline::compare(baseline, &report)?;
+        if worse > 0 {
+            printing::error(format_args!(
+                "{worse} figures are worse than in {} by more than the noise",
+                path.display()
+            ));
+        }
+    }
+    Ok(if failed + worse > 0 { ExitCode::FAILURE } else { ExitCode::SUCCESS })
+}
+
+/// Loads what is to be measured. The backends come when they are known.
+fn settings(options: &Options, sections: &[Definition]) -> Result<Settings> {
+    let effort = options.effort();
+    let reference = options.reference.as_deref().map(picture::read).transpose()?;
+    if reference.is_some() && options.scenes.len() != 1 {
+        return Err(Error::Usage(format!(
+            "--reference is the picture of one scene, but there are {}: give exactly one SCENE",
+            options.scenes.len()
+        )));
+    }
+    let paths = if !sections.iter().any(|section| section.scenes) {
+        vec![]
+    } else if options.scenes.is_empty() {
+        standard_scenes(if options.quick { QUICK_SCENES } else { SCENES.len() })?
+    } else {
+        options.scenes.clone()
+    };
+    let size = match &reference {
+        Some(picture) => (picture.width, Some(picture.height)),
+        None => (options.width.unwrap_or(effort.width()), None),
+    };
+    let mut estimators = options.estimator.clone();
+    if estimators.is_empty() {
+        estimators = STANDARD.map(String::from).to_vec();
+    }
+    Ok(Settings {
+        effort,
+        rounds: options.rounds.map_or(effort.rounds(), |rounds| rounds as usize),
+        scenes: BenchScene::load(&paths, size)?,
+        backends: vec![],
+        estimators,
+        reference,
+    })
+}
+
+/// The repository's scenes.
+fn standard_scenes(count: usize) -> Result<Vec<PathBuf>> {
+    let path = |name: &&str| PathBuf::from(format!("scenes/{name}/{name}.toml"));
+    let paths: Vec<_> = SCENES[..count].iter().map(path).collect();
+    match paths.iter().find(|path| !path.is_file()) {
+        None => Ok(paths),
+        Some(missing) => Err(Error::Usage(format!(
+            "no SCENE is given, and the standard ones are not in this folder ({} is missing): give scene files, or run it in \
+             luminaire's repository",
+            missing.display()
+        ))),
+    }
+}
+
+/// Those that are asked for, all of which have to be there, or those that are there.
+fn backends(options: &Options, bench: &Workbench) -> Result<Vec<luminaire::backend::Backend>> {
+    let there = bench.backends();
+    let asked: Vec<_> = options.backend.iter().filter_map(|name| name.backend()).collect();
+    if let Some(missing) = asked.iter().find(|backend| !there.contains(backend)) {
+        return Err(Error::NoDevice(format!("{missing} cannot run here: {}", bench.device)));
+    }
+    if asked.is_empty() {
+        let all = [BackendName::ComputeBvh, BackendName::RayQuery].into_iter().filter_map(BackendName::backend);
+        for missing in all.filter(|backend| !there.contains(backend)) {
+            note(&format!("SKIP: {missing} cannot run here: {}", bench.device));
+        }
+        return Ok(there);
+    }
+    Ok(there.into_iter().filter(|backend| asked.contains(backend)).collect())
+}
+
+/// Writes the page, the charts, and the numbers.
+fn write(options: &Options, folder: &Path, report: &Report) -> Result<()> {
+    for section in report.sections() {
+        for chart in &section.charts {
+            save_text(&folder.join(file_name(section, chart)), &chart.svg())?;
+        }
+    }
+    save_text(&folder.join("figures.csv"), &report.figures_csv())?;
+    save_text(&folder.join("points.csv"), &report.points_csv())?;
+    save_text(&folder.join("bench.json"), &report.json())?;
+    if let Some(page) = &options.page {
+        save_text(page, &markdown(report, &seen_from(page, folder)))?;
+    }
+    save_text(&folder.join("index.html"), &html(report))
+}

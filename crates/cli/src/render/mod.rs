@@ -1,0 +1,156 @@
+//! `luminaire render`.
+
+mod checkpoint;
+mod ending;
+mod failing_tracer;
+mod options;
+mod outcome;
+mod outputs;
+mod progress;
+mod replay;
+mod stats;
+mod summary;
+#[cfg(feature = "shaderc")]
+mod watch;
+
+pub use self::options::Options;
+
+use self::checkpoint::Checkpoint;
+use self::failing_tracer::FailingTracer;
+use self::options::LARGEST_SIDE;
+use self::outcome::Outcome;
+use self::progress::Reporter;
+use self::stats::Seconds;
+use crate::backend_name;
+use crate::film_size::FilmSize;
+use crate::interrupts;
+use crate::printing::Notes;
+use crate::values::Pixel;
+use luminaire::backend::{self, Renderer, Request};
+use luminaire::film::Film;
+use luminaire::render::{End, Limits, Rendered, aovs, resume};
+use luminaire::scene::{self, FilmSettings, Scene};
+use luminaire::{Error, Result};
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Instant;
+
+/// Loads, renders and writes. Everything that can be checked beforehand is.
+pub fn run(options: &Options) -> Result<ExitCode> {
+    let notes = Notes { quiet: options.quiet };
+    let request = backend_name::request(options.backend, options.device.as_deref())?;
+    outputs::check_layers(options)?;
+    checkpoint::check(options)?;
+    options.estimator.check()?;
+    let mut pictures = vec![];
+    if options.pixel.is_none() {
+        pictures = outputs::pictures(options)?;
+        outputs::check_others(options, &pictures)?;
+    }
+    interrupts::listen(notes)?;
+
+    let mut seconds = Seconds::default();
+    let start = Instant::now();
+    let mut scene = scene::load(&options.scene)?;
+    seconds.load = start.elapsed().as_secs_f64();
+    change(&mut scene, options)?;
+    scene.warnings.iter().for_each(|warning| notes.warn(warning));
+
+    let render = || trace(options, &scene, &request, seconds, &pictures, notes);
+    #[cfg(feature = "shaderc")]
+    if options.watch {
+        return watch::repeat(&interrupts::STOP, &render);
+    }
+    render()
+}
+
+/// Puts the options in the place of what the scene says. A usage error if they do not fit it.
+fn change(scene: &mut Scene, options: &Options) -> Result<()> {
+    FilmSize { width: options.width, height: options.height, largest: LARGEST_SIDE }.apply(&mut scene.film);
+    options.estimator.apply(scene)?;
+    scene.settings.seed = options.seed.unwrap_or(scene.settings.seed);
+    scene.settings.exposure = options.exposure.unwrap_or(scene.settings.exposure);
+    let FilmSettings { width, height, .. } = scene.film;
+    Film::check_size(width, height)?;
+    match options.pixel {
+        Some(Pixel { x, y }) if x >= width || y >= height => {
+            Err(Error::Usage(format!("--pixel {x},{y} is not on the film, which has {width} x {height} pixels")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Opens the device, renders and writes.
+fn trace(
+    options: &Options,
+    scene: &Scene,
+    request: &Request,
+    mut seconds: Seconds,
+    pictures: &[PathBuf],
+    notes: Notes,
+) -> Result<ExitCode> {
+    // Before a device is opened, which takes longer than to find a checkpoint that does not fit.
+    let begun = if options.pixel.is_some() {
+        Rendered::nothing((scene.film.width, scene.film.height), 0)?
+    } else {
+        checkpoint::begin(options, scene, notes)?
+    };
+    let start = Instant::now();
+    let mut renderer = backend::open(scene, request)?;
+    seconds.open = start.elapsed().as_secs_f64();
+    seconds.build = renderer.build_seconds;
+    note_renderer(&renderer, notes);
+    if let (Some(pixel), Some(sample)) = (options.pixel, options.sample) {
+        return replay::run(scene, &mut renderer, pixel, sample);
+    }
+
+    let limits = limits(options, scene);
+    let mut checkpoint = Checkpoint::of(options, scene, notes);
+    let mut reporter = Reporter::new(options.quiet);
+    interrupts::render_begins();
+    let mut watch = |rendered: &Rendered| {
+        reporter.update(&rendered.progress);
+        if let Some(checkpoint) = &mut checkpoint {
+            checkpoint.update(rendered);
+        }
+    };
+    let mut tracer = FailingTracer::new(renderer.tracer.as_mut())?;
+    let mut rendered = resume(&mut tracer, begun, limits, &mut watch, &interrupts::STOP);
+    reporter.finish();
+    if let (Some(wanted), least) = (limits.spp, rendered.film.first_sample + rendered.film.least_samples())
+        && least > wanted
+    {
+        notes.note(&format!("the checkpoint already held more samples than were asked for: {least} a pixel"));
+    }
+    // First of all: whatever fails after it, nothing is lost.
+    let checkpoint = checkpoint.filter(|_| rendered.progress.samples > 0);
+    let saved = checkpoint.map(|checkpoint| interrupts::hold_off(|| checkpoint.save(&rendered)));
+    // A device that has failed would only fail again, and who interrupts does not want to wait.
+    let mut layers = None;
+    if options.wants_aovs() && !matches!(rendered.end, End::Failed(_) | End::Stopped) {
+        let size = (rendered.film.width, rendered.film.height);
+        match aovs(&mut tracer, size, rendered.film.most_samples()) {
+            Ok(found) => layers = Some(found),
+            Err(error) => rendered.end = End::Failed(error),
+        }
+    }
+    seconds.render = rendered.progress.seconds;
+    seconds.device = rendered.device_seconds;
+    let outcome = Outcome { options, scene, renderer: &renderer, rendered, aovs: layers, saved, seconds };
+    ending::finish(outcome, pictures, notes)
+}
+
+/// Prints what renders, where, and why.
+fn note_renderer(renderer: &Renderer, notes: Notes) {
+    let notice = if renderer.notice { "notice: " } else { "" };
+    let driver = if renderer.driver.is_empty() { String::new() } else { format!(", {}", renderer.driver) };
+    notes.note(&format!("{notice}{} on {}{driver}: {}", renderer.backend, renderer.device, renderer.why));
+}
+
+/// When the render ends: the scene's samples a pixel count only where nothing else limits it.
+fn limits(options: &Options, scene: &Scene) -> Limits {
+    let other_limit = options.time.is_some() || options.noise.is_some();
+    let scene_spp = (!other_limit).then_some(scene.settings.spp);
+    let spp = options.samples.as_ref().map(|samples| samples.end).or(options.spp).or(scene_spp);
+    Limits { spp, seconds: options.time, noise: options.noise }
+}

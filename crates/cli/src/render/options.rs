@@ -1,0 +1,174 @@
+//! What to render, and how.
+
+use crate::backend_name::BackendName;
+use crate::estimator::EstimatorOptions;
+use crate::exit_codes::EXIT_CODES;
+use crate::values::{Pixel, noise, pixel, range, seconds, stops};
+use std::ops::Range;
+use std::path::PathBuf;
+
+const EXAMPLES: &str = "\
+Examples:
+  luminaire render scenes/cornell/cornell.toml
+      cornell.png in the current folder, with what the scene file says
+  luminaire render model.obj -o out/model.png -o out/model.exr --width 1920 --spp 256
+      two files of one render; the height follows from the scene's aspect ratio
+  luminaire render model.obj --time 30 --backend compute-bvh --stats run.json
+      as many samples as 30 seconds allow, and the figures of the run
+  luminaire render model.obj --noise 0.02 --time 600 --error-map noise.png
+      until the estimated error is 2 %, but no longer than ten minutes; and where it is how large
+  luminaire render model.obj --spp 4096 -o model.exr --checkpoint model.checkpoint.exr --resume
+      goes on where it was, however it ended; the same command again after Ctrl-C, a crash or a power cut
+  luminaire render model.obj --samples 1024..2048 -o part-1.exr
+      one part of four, on one machine of four; `luminaire merge part-*.exr -o model.exr` joins them
+
+";
+
+/// The largest side of a picture in pixels.
+pub const LARGEST_SIDE: u32 = 65536;
+
+/// Options that mean nothing where nothing is rendered.
+const REPLAY_CONFLICTS: [&str; 9] =
+    ["output", "error_map", "aov", "stats", "spp", "time", "noise", "samples", "checkpoint"];
+
+/// What to render, and how.
+#[derive(Debug, clap::Args)]
+#[command(after_help = format!("{EXAMPLES}{EXIT_CODES}"))]
+pub struct Options {
+    /// A scene file (.toml) or any OBJ file.
+    pub scene: PathBuf,
+
+    /// A file to write; .png, .exr or .hdr says the format. May be given several times [default: <SCENE>.png here].
+    #[arg(short, long, value_name = "FILE", help_heading = "Output")]
+    pub output: Vec<PathBuf>,
+    /// Exposure of a PNG in stops: radiance times 2^STOPS [default: the scene's].
+    #[arg(long, value_name = "STOPS", allow_negative_numbers = true, value_parser = stops, help_heading = "Output")]
+    pub exposure: Option<f32>,
+    /// Write a heat map of the estimated relative error of every pixel.
+    #[arg(long, value_name = "FILE.png", help_heading = "Output")]
+    pub error_map: Option<PathBuf>,
+    /// Give EXR files the layers albedo, N (normal) and Z (depth) of what the camera sees first, and the number of samples: for denoisers
+    /// and compositing.
+    #[arg(long, conflicts_with = "samples", help_heading = "Output")]
+    pub aov: bool,
+    /// Write a denoised picture, too. It has a bias that the estimated error does not know.
+    #[cfg(feature = "denoise")]
+    #[arg(long, value_name = "FILE", conflicts_with = "samples", help_heading = "Output")]
+    pub denoised: Option<PathBuf>,
+    /// Write the figures of the run to a JSON file.
+    #[arg(long, value_name = "FILE.json", help_heading = "Output")]
+    pub stats: Option<PathBuf>,
+    /// Say nothing but errors.
+    #[arg(long, help_heading = "Output")]
+    pub quiet: bool,
+
+    /// Samples a pixel [default: the scene's, unless there is --time or --noise].
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..), help_heading = "Quality")]
+    pub spp: Option<u32>,
+    /// Stop rendering after so many seconds; with --spp, whichever comes first.
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = seconds, help_heading = "Quality")]
+    pub time: Option<f64>,
+    /// Stop when the estimated relative error (the root of relMSE) is below E, for example 0.02; with --spp and --time, whichever
+    /// comes first.
+    #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = noise, help_heading = "Quality")]
+    pub noise: Option<f64>,
+    /// Render only samples number A to B - 1 of every pixel, as a part that `luminaire merge` joins with others; wants -o PART.exr.
+    #[arg(long, value_name = "A..B", value_parser = range, conflicts_with_all = ["spp", "time", "noise"], help_heading = "Quality")]
+    pub samples: Option<Range<u32>>,
+    /// Width in pixels [default: the scene's, or from --height at the scene's aspect ratio].
+    #[arg(long, value_name = "PIXELS", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=i64::from(LARGEST_SIDE)), help_heading = "Quality")]
+    pub width: Option<u32>,
+    /// Height in pixels [default: the scene's, or from --width at the scene's aspect ratio].
+    #[arg(long, value_name = "PIXELS", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=i64::from(LARGEST_SIDE)), help_heading = "Quality")]
+    pub height: Option<u32>,
+    /// Seed of the random numbers: the same seed gives the same picture [default: the scene's].
+    #[arg(long, value_name = "N", allow_negative_numbers = true, help_heading = "Quality")]
+    pub seed: Option<u32>,
+    #[command(flatten)]
+    pub estimator: EstimatorOptions,
+
+    /// Save the render there while it runs, when it ends, and on Ctrl-C or SIGTERM: an EXR file of the picture so far, and of all that
+    /// --resume needs.
+    #[arg(long, value_name = "FILE.exr", help_heading = "Long renders")]
+    pub checkpoint: Option<PathBuf>,
+    /// Seconds between two checkpoints.
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = seconds, requires = "checkpoint", help_heading = "Long renders")]
+    pub checkpoint_every: f64,
+    /// Go on from the checkpoint, on any backend or device; if there is none yet, start. Also gives a finished render more samples.
+    #[arg(long, requires = "checkpoint", help_heading = "Long renders")]
+    pub resume: bool,
+
+    /// Trace one sample of one pixel again and print its path, instead of rendering; with --sample.
+    #[arg(long, value_name = "X,Y", value_parser = pixel, requires = "sample", conflicts_with_all = REPLAY_CONFLICTS, help_heading = "Replay")]
+    pub pixel: Option<Pixel>,
+    /// The number of the sample that --pixel traces.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..i64::from(u32::MAX)), requires = "pixel", help_heading = "Replay")]
+    pub sample: Option<u32>,
+
+    /// Render again whenever a shader changes (the sources are in LUMINAIRE_SHADERS, or where the program was built).
+    #[cfg(feature = "shaderc")]
+    #[arg(long, help_heading = "Device")]
+    pub watch: bool,
+    /// What traces the rays.
+    #[arg(long, value_name = "NAME", default_value = "auto", help_heading = "Device")]
+    pub backend: BackendName,
+    /// A Vulkan device: its index in `luminaire devices`, or a part of its name [default: the best].
+    #[arg(long, value_name = "INDEX|NAME", help_heading = "Device")]
+    pub device: Option<String>,
+}
+
+impl Options {
+    /// Whether a file will hold what the camera sees first.
+    pub fn wants_aovs(&self) -> bool {
+        #[cfg(feature = "denoise")]
+        if self.denoised.is_some() {
+            return true;
+        }
+        self.aov
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Args;
+
+    #[test]
+    fn numbers_are_checked() {
+        let render = |options: &[&str]| {
+            let render = Options::augment_args(clap::Command::new("render"));
+            render.try_get_matches_from(["render", "a.obj"].iter().chain(options)).map_err(|e| e.exit_code())
+        };
+        for bad in [
+            ["--spp", "0"],
+            ["--spp", "-1"],
+            ["--spp", "4294967296"],
+            ["--time", "0"],
+            ["--time", "nan"],
+            ["--time", "inf"],
+            ["--noise", "0"],
+            ["--noise", "nan"],
+            ["--pixel", "1"],
+            ["--pixel", "1,-1"],
+            ["--width", "0"],
+            ["--height", "65537"],
+            ["--seed", "-1"],
+            ["--exposure", "nan"],
+            ["--integrator", "path"],
+            ["--estimator", "photon"],
+            ["--light-sampling", "some"],
+            ["--area-sampling", "some"],
+            ["--directions", "some"],
+            ["--extinction", "some"],
+            ["--albedo-threshold", "1.5"],
+            ["--sampler", "some"],
+            ["--backend", "gpu"],
+            ["--max-bounces", "1000001"],
+        ] {
+            assert_eq!(render(&bad).unwrap_err(), 2, "{bad:?}");
+        }
+        for good in [["--spp", "4294967295"], ["--time", "0.5"], ["--exposure", "-2"], ["--max-bounces", "0"]] {
+            assert!(render(&good).is_ok(), "{good:?}");
+        }
+    }
+}

@@ -1,0 +1,27 @@
+//! What a render leaves.
+
+use super::options::Options;
+use super::stats::Seconds;
+use luminaire::Result;
+use luminaire::backend::Renderer;
+use luminaire::film::Aovs;
+use luminaire::render::Rendered;
+use luminaire::scene::Scene;
+
+/// What a render leaves, before any picture is written.
+pub struct Outcome<'a> {
+    /// What was asked for.
+    pub options: &'a Options,
+    /// What was rendered.
+    pub scene: &'a Scene,
+    /// What rendered it.
+    pub renderer: &'a Renderer,
+    /// The film, and how the render ended.
+    pub rendered: Rendered,
+    /// What the camera sees first, where a file holds it.
+    pub aovs: Option<Aovs>,
+    /// Whether the checkpoint could be saved; none: there is no `--checkpoint`, or nothing to save.
+    pub saved: Option<Result<()>>,
+    /// How long everything took until now.
+    pub seconds: Seconds,
+}

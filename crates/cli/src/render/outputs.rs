@@ -1,0 +1,131 @@
+//! The files that a render leaves, except for its checkpoint.
+
+use super::options::Options;
+use super::outcome::Outcome;
+use super::stats::Stats;
+use luminaire::part::Provenance;
+use luminaire::scene::FilmSettings;
+use luminaire::{Error, Result, files, part, picture};
+use luminaire_measure::heat_map;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Whether the name of a file says that it holds floats and layers.
+pub fn is_exr(path: &Path) -> bool {
+    matches!(picture::Format::of(path), Ok(picture::Format::Exr))
+}
+
+/// Refuses a part and layers where no file can hold them.
+pub fn check_layers(options: &Options) -> Result<()> {
+    if options.samples.is_some() && !options.output.iter().any(|path| is_exr(path)) {
+        return Err(Error::Usage(
+            "--samples renders a part, which only an EXR file holds: say which with -o PART.exr".into(),
+        ));
+    }
+    if options.aov && !options.output.iter().any(|path| is_exr(path)) {
+        return Err(Error::Usage("--aov adds layers, which only an EXR file holds: name one with -o FILE.exr".into()));
+    }
+    Ok(())
+}
+
+/// The pictures to write. A usage error if one of them is named twice or cannot be written.
+pub fn pictures(options: &Options) -> Result<Vec<PathBuf>> {
+    let mut pictures = options.output.clone();
+    if pictures.is_empty() {
+        let stem = options.scene.file_stem().ok_or_else(|| Error::read(&options.scene, "it is not a file"))?;
+        let mut name = stem.to_owned();
+        name.push(".png");
+        pictures.push(name.into());
+    }
+    for (i, path) in pictures.iter().enumerate() {
+        if pictures[..i].contains(path) {
+            return Err(Error::Usage(format!("-o {} is given twice", path.display())));
+        }
+        picture::check_output(path)?;
+    }
+    Ok(pictures)
+}
+
+/// Refuses the other files where they cannot be written, or are one of the pictures.
+pub fn check_others(options: &Options, pictures: &[PathBuf]) -> Result<()> {
+    #[cfg(feature = "denoise")]
+    if let Some(path) = &options.denoised {
+        if pictures.contains(path) {
+            return Err(Error::Usage(format!("--denoised {}: the picture itself is written there", path.display())));
+        }
+        picture::check_output(path)?;
+    }
+    if let Some(path) = &options.error_map {
+        if pictures.contains(path) {
+            return Err(Error::Usage(format!("--error-map {}: the picture itself is written there", path.display())));
+        }
+        if options.spp == Some(1) {
+            return Err(Error::Usage(
+                "--error-map wants at least --spp 2: one sample tells nothing of its error".into(),
+            ));
+        }
+        if picture::Format::of(path)? != picture::Format::Png {
+            return Err(Error::Usage(format!("--error-map {}: the name must end in .png", path.display())));
+        }
+        files::check_writable(path)?;
+    }
+    if let Some(path) = &options.stats {
+        if path.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("json")) {
+            return Err(Error::Usage(format!("--stats {}: the name must end in .json", path.display())));
+        }
+        files::check_writable(path)?;
+    }
+    Ok(())
+}
+
+/// Writes the pictures and the figures.
+pub fn write(outcome: &mut Outcome, pictures: &[PathBuf]) -> Result<()> {
+    let start = Instant::now();
+    write_pictures(outcome, pictures)?;
+    outcome.seconds.write = start.elapsed().as_secs_f64();
+    if let Some(path) = &outcome.options.stats {
+        let stats = Stats::new(outcome.scene, outcome.renderer, &outcome.rendered, outcome.seconds, pictures);
+        let text = serde_json::to_string_pretty(&stats).map_err(|e| Error::write(path, e))?;
+        files::save_text(path, &(text + "\n"))?;
+    }
+    Ok(())
+}
+
+/// Writes the pictures, and those of the error and without noise.
+fn write_pictures(outcome: &Outcome, pictures: &[PathBuf]) -> Result<()> {
+    let Outcome { options, scene, rendered, .. } = outcome;
+    let provenance = options.samples.as_ref().map(|_| Provenance::of(scene));
+    let save = |path: &PathBuf| match (&provenance, &outcome.aovs, picture::Format::of(path)?) {
+        (Some(provenance), _, picture::Format::Exr) => part::save(path, rendered, provenance),
+        (_, Some(aovs), picture::Format::Exr) if options.aov => rendered.film.save_with_aovs(path, aovs),
+        _ => rendered.film.save(path, scene.settings.exposure),
+    };
+    // Every file is tried: one that cannot be written must not cost the others.
+    let saved: Vec<_> = pictures.iter().map(save).collect();
+    saved.into_iter().collect::<Result<()>>()?;
+    let FilmSettings { width, height, .. } = scene.film;
+    if let (Some(path), Some(errors)) = (&options.error_map, rendered.film.error_map()) {
+        let [low, high] = heat_map::RELATIVE_ERRORS;
+        picture::save_png(path, &heat_map::heat_map(width, height, &errors.relative, low, high))?;
+    }
+    #[cfg(feature = "denoise")]
+    if let (Some(path), Some(aovs)) = (&options.denoised, &outcome.aovs) {
+        let picture = luminaire::denoise::denoise(&rendered.film, aovs)?;
+        picture::save_linear(path, width, height, &picture, scene.settings.exposure)?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::{Args, FromArgMatches};
+
+    #[test]
+    fn the_default_output_is_named_after_the_scene() {
+        let command = Options::augment_args(clap::Command::new("render"));
+        let matches = command.try_get_matches_from(["render", "a/b.scene.toml"]).unwrap();
+        let options = Options::from_arg_matches(&matches).unwrap();
+        assert_eq!(pictures(&options).unwrap(), [PathBuf::from("b.scene.png")]);
+    }
+}

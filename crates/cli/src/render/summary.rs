@@ -1,0 +1,57 @@
+//! What is printed at the end of a render.
+
+use super::outcome::Outcome;
+use crate::figures::{duration, percent};
+use luminaire::render::End;
+use std::path::PathBuf;
+
+/// Where the files are, how long it took, and how fast it was.
+pub fn summary(outcome: &Outcome, written: &[PathBuf]) -> String {
+    let Outcome { options, rendered, seconds, .. } = outcome;
+    let progress = &rendered.progress;
+    let film = &rendered.film;
+    let (least, most) = (film.least_samples(), film.most_samples());
+    let spp = if least == most { least.to_string() } else { format!("{least} to {most}") };
+    let ended = match rendered.end {
+        End::Time => ", ended by --time",
+        End::Noise => ", ended by --noise",
+        End::Samples | End::Stopped | End::Failed(_) => "",
+    };
+    let mut text = String::new();
+    for path in written {
+        text += &format!("{}: {} x {} pixels, {spp} samples a pixel{ended}\n", path.display(), film.width, film.height);
+    }
+    if let Some(path) = options.error_map.as_ref().filter(|_| progress.error.is_some()) {
+        text +=
+            &format!("{}: estimated relative error of every pixel, 0.1 % (black) to 100 % (white)\n", path.display());
+    }
+    if let Some(path) = &options.stats {
+        text += &format!("{}: the figures of this run\n", path.display());
+    }
+    if let Some(error) = progress.error {
+        text += &format!("estimated error {} (RMSE {:.3e})", percent(error.relative()), error.rmse);
+        text += &match error.fireflies {
+            0 => "\n".into(),
+            1 => format!(
+                ", without 1 pixel that is a firefly or a very small lamp (with it {})\n",
+                percent(error.relative_with_fireflies())
+            ),
+            n => format!(
+                ", without {n} pixels that are fireflies or very small lamps (with them {})\n",
+                percent(error.relative_with_fireflies())
+            ),
+        };
+    }
+    if let (Some(limit), false) = (progress.limits.noise, matches!(rendered.end, End::Noise)) {
+        text += &format!("--noise {limit} was not reached\n");
+    }
+    text += &format!(
+        "load {}, build {}, render {}; {:.2} Mrays/s, {:.3} million samples/s\n",
+        duration(seconds.load),
+        duration(seconds.build),
+        duration(seconds.render),
+        progress.mrays_per_second(),
+        progress.samples as f64 / progress.seconds.max(1e-9) * 1e-6
+    );
+    text
+}

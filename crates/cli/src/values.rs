@@ -1,0 +1,62 @@
+//! Values of options: read, and refused in words that say what is expected.
+
+use std::ops::Range;
+
+/// Seconds above 0.
+pub fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        // More than a thousand years, no clock counts.
+        Ok(seconds) if seconds > 0.0 && seconds < 3.2e10 => Ok(seconds),
+        _ => Err("expected a number of seconds above 0, for example 30 or 0.5".into()),
+    }
+}
+
+/// A relative error above 0.
+pub fn noise(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(noise) if noise > 0.0 && noise.is_finite() => Ok(noise),
+        _ => Err("expected a relative error above 0, for example 0.02 for 2 %".into()),
+    }
+}
+
+/// A pixel of the film: column and row, counted from 0 at the upper left.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Pixel {
+    /// Column.
+    pub x: u32,
+    /// Row.
+    pub y: u32,
+}
+
+/// A pixel, as `X,Y`.
+pub fn pixel(text: &str) -> Result<Pixel, String> {
+    let number = |text: &str| text.trim().parse::<u32>().ok();
+    match text.split_once(',').map(|(x, y)| (number(x), number(y))) {
+        Some((Some(x), Some(y))) => Ok(Pixel { x, y }),
+        _ => Err("expected column and row of a pixel, counted from 0 at the upper left, for example 12,40".into()),
+    }
+}
+
+/// A number from 0.
+pub fn limit(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(limit) if limit >= 0.0 && limit.is_finite() => Ok(limit),
+        _ => Err("expected a number from 0, for example 0.01".into()),
+    }
+}
+
+/// An exposure in stops.
+pub fn stops(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(stops) if stops.abs() <= 64.0 => Ok(stops),
+        _ => Err("expected a number of stops from -64 to 64, for example 1.5".into()),
+    }
+}
+
+/// Numbers of samples, as `A..B`.
+pub fn range(text: &str) -> Result<Range<u32>, String> {
+    let range = text.split_once("..").and_then(|(a, b)| Some(a.trim().parse().ok()?..b.trim().parse().ok()?));
+    range.filter(|range: &Range<u32>| range.start < range.end).ok_or_else(|| {
+        "expected the numbers of the first sample and of the one after the last, for example 0..64 or 64..128".into()
+    })
+}
