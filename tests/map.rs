@@ -44,7 +44,10 @@ impl Paths<'_> {
             "crate" => vec![here[0].clone()],
             "self" => here,
             "super" => here[..here.len() - 1].to_vec(),
-            package if PACKAGES.iter().any(|(name, _)| *name == package) => vec![package.to_owned()],
+            // Within a package its own name is that of a module, if of anything.
+            package if package != here[0] && PACKAGES.iter().any(|(name, _)| *name == package) => {
+                vec![package.to_owned()]
+            }
             _ => return None,
         };
         for segment in &segments[1..] {
