@@ -61,7 +61,7 @@ MUTATIONS = [
      "self.lambert / PI", "self.lambert", [CLOSED_FORMS, REFERENCE]),
     ("parts share a scrambling", "shaders/rng.glsl",
      "random4(pixel, ~part, block, seed)", "random4(pixel, ~0u, block, seed)", [ERROR_BAR, KERNEL]),
-    ("samples left out still count", "src/film.rs",
+    ("samples left out still count", "src/film/mod.rs",
      "taken - self.dropped.get(&(pixel, part)).unwrap_or(&0)", "taken", [["--lib", "film"]]),
 ]
 
@@ -86,7 +86,6 @@ def run(arguments):
         "CARGO_TARGET_DIR": str(COPY.parent / "target"),
         # A bug changes little: what it leaves alone is not compiled again.
         "CARGO_INCREMENTAL": "1",
-        "CARGO_PROFILE_RELEASE_DEBUG": "false",
         "LUMINAIRE_REQUIRE_GPU": "1",
         "RUST_BACKTRACE": "0",
     }

@@ -5,7 +5,7 @@
 #   scripts/setup.sh vulkan   a usable Vulkan device: the one that is there, else Mesa's lavapipe (a driver for CPUs)
 #   scripts/setup.sh test     what the tests want besides: lavapipe with ray query, glslc, the validation layers, a virtual X
 #                             server, and an older lavapipe without ray query under target/drivers/
-#   scripts/setup.sh ci       the same, and pip for .ci/run
+#   scripts/setup.sh ci       the same, and pip and a C++ compiler for .ci/run
 #
 # It installs on Debian 12, Debian 13 and Ubuntu 24.04 (and what is like them); elsewhere it says what to install.
 set -euo pipefail
@@ -189,7 +189,10 @@ test)
     ;;
 ci)
     build
-    if python3 -m pip --version >/dev/null 2>&1; then for_tests; else for_tests python3-pip; fi
+    more=()
+    python3 -m pip --version >/dev/null 2>&1 || more+=(python3-pip)
+    command -v c++ >/dev/null || more+=(g++)
+    for_tests "${more[@]}"
     ;;
 *) fail "usage: scripts/setup.sh build|vulkan|test|ci" ;;
 esac

@@ -1,9 +1,12 @@
 //! luminaire: a path tracer on Vulkan that is held against a double-precision reference.
 //!
 //! A scene is plain data ([`scene`]). Two tracers turn it into radiance samples: the double-precision [`mod@reference`] and the
-//! GPU renderer ([`gpu`], [`accel`]: one GLSL kernel, on ray queries or on a compute-shader BVH). Both draw the same
+//! GPU renderer ([`gpu`]: one GLSL kernel, on ray queries or on a compute-shader BVH). Both draw the same
 //! [`sampling`] numbers, so they are compared sample by sample. A [`film`] adds the samples up and knows how uncertain they are; [`render`]
-//! drives it all, and [`backend`] chooses who traces. [`view`] shows it in a window. [`measure`] compares pictures, and shows where methods fail.
+//! drives it all, and [`backend`] chooses who traces.
+//!
+//! On it stand three crates beside it: `luminaire-measure` compares pictures, benchmarks, and shows where methods fail; `luminaire-view` is the window;
+//! `luminaire-cli` is the program `luminaire`.
 //!
 //! ```text
 //! scene file + OBJ/MTL ─ scene::load ─► Scene ─┬─► reference (f64) ───────────────┐
