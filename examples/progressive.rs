@@ -19,7 +19,7 @@ const FRAME: Duration = Duration::from_millis(100);
 pub struct Frame {
     /// Samples a pixel so far.
     pub spp: f64,
-    /// Estimated relative error; none while there are too few samples to tell.
+    /// Estimated relative error; none while there are too few samples for an estimate.
     pub error: Option<f64>,
     /// Red, green and blue of each pixel, rows from the top: what a window or a texture takes.
     pub srgb: Vec<u8>,

@@ -1,4 +1,4 @@
-//! Renders a scene file, or any OBJ, to a picture, and tells how far it is.
+//! Renders a scene file, or any OBJ, to a picture, and prints how far it is.
 //!
 //! `cargo run --release --example render_file -- [SCENE [PICTURE]]`
 

@@ -25,7 +25,7 @@ pub fn check_writable(path: &Path) -> Result<()> {
     if std::fs::metadata(path).is_ok_and(|about| about.permissions().readonly()) {
         return Err(Error::write(path, "it is read-only; make it writable, or give another name"));
     }
-    // Permission bits do not tell about read-only file systems, so one is really created (and removed).
+    // Permission bits say nothing of read-only file systems, so one is really created (and removed).
     create_beside(path).map(drop)
 }
 

@@ -1,8 +1,8 @@
-//! The error bar: how far a picture is from the truth, told from the spread of the independent parts of its samples.
+//! The error bar: how far a picture is from the truth, estimated from the spread of the independent parts of its samples.
 //!
-//! The variance of a pixel's mean follows from the means of its [`PARTS`](crate::sampling::PARTS) parts. Four numbers tell a variance
-//! badly, and where the light comes in rare bright samples they tell too little (all of them may have missed it), so a pixel's error
-//! is that of its 3 x 3 neighbourhood. Pixels that stand out of theirs by what few parts hold, *fireflies*, are counted apart: by itself nobody can tell one from a
+//! The variance of a pixel's mean follows from the means of its [`PARTS`](crate::sampling::PARTS) parts. Four numbers estimate a variance
+//! badly, and where the light comes in rare bright samples they estimate too little (all of them may have missed it), so a pixel's error
+//! is that of its 3 x 3 neighbourhood. Pixels that stand out of theirs by what few parts hold, *fireflies*, are counted apart: by itself one looks like a
 //! small bright object.
 
 use super::Film;
@@ -34,7 +34,7 @@ pub struct ErrorEstimate {
     pub rel_mse: f64,
     /// Pixels that are left out.
     pub fireflies: u64,
-    /// `rel_mse` with them, as if their neighbours told what they should look like. Where it is much larger, the picture either has fireflies or
+    /// `rel_mse` with them, as if their neighbours showed what they should look like. Where it is much larger, the picture either has fireflies or
     /// has not seen enough of its light.
     pub rel_mse_with_fireflies: f64,
 }
@@ -59,7 +59,7 @@ pub struct ErrorMap {
     pub standard_error: Vec<[f32; 3]>,
     /// The same over the radiance, or over 0.1 where that is darker: the root mean square of the channels.
     pub relative: Vec<f32>,
-    /// Whether the pixel is a firefly, whose own parts alone tell its error, or has too few finite samples to tell it.
+    /// Whether the pixel is a firefly, whose error is estimated from its own parts alone, or has too few finite samples for an estimate.
     pub firefly: Vec<bool>,
     /// The picture as a whole.
     pub total: ErrorEstimate,
@@ -78,20 +78,20 @@ impl Film {
 
     /// The estimated error of every pixel; none if no pixel has samples in two parts.
     pub fn error_map(&self) -> Option<ErrorMap> {
-        // The fourth "channel" is the mean of the others, by which fireflies are told.
-        let told: Vec<Option<[Measured; 4]>> =
+        // The fourth "channel" is the mean of the others, by which fireflies are recognised.
+        let measured: Vec<Option<[Measured; 4]>> =
             (0..self.pixels()).into_par_iter().map(|pixel| self.measured(pixel)).collect();
-        if told.iter().all(Option::is_none) {
+        if measured.iter().all(Option::is_none) {
             return None;
         }
-        // A pixel without samples in two parts (because they were not finite, or the render has just begun) tells nothing, and is left out
+        // A pixel without samples in two parts (because they were not finite, or the render has just begun) has no estimate, and is left out
         // like a firefly.
         let unknown = |pixel: usize| {
             let [r, g, b] = self.mean(pixel);
             [r, g, b, (r + g + b) / 3.0].map(|mean| Measured { mean, variance: 0.0 })
         };
         let own: Vec<[Measured; 4]> =
-            told.iter().enumerate().map(|(pixel, told)| told.unwrap_or_else(|| unknown(pixel))).collect();
+            measured.iter().enumerate().map(|(pixel, measured)| measured.unwrap_or_else(|| unknown(pixel))).collect();
         let map = |f: &(dyn Fn(usize) -> [f64; 4] + Sync)| -> Vec<[f64; 4]> {
             (0..own.len()).into_par_iter().map(f).collect()
         };
@@ -108,9 +108,9 @@ impl Film {
                 if weights > 0.0 { sum / weights } else { own[pixel][c].mean }
             })
         });
-        let firefly: Vec<bool> = (own.iter().zip(&expected).zip(&told))
-            .map(|(([.., grey], [.., expected]), told)| {
-                told.is_none()
+        let firefly: Vec<bool> = (own.iter().zip(&expected).zip(&measured))
+            .map(|(([.., grey], [.., expected]), measured)| {
+                measured.is_none()
                     || grey.variance > FIREFLY_VARIANCE * grey.mean * grey.mean
                         && grey.mean > FIREFLY_CONTRAST * (expected + FIREFLY_FLOOR)
             })
@@ -191,7 +191,7 @@ struct Measured {
 }
 
 impl Measured {
-    /// The radiance as far as it can be told: the pixel's own where it is sure of it, towards its neighbours' where it is not (James and
+    /// The radiance as far as it is known: the pixel's own where it is sure of it, towards its neighbours' where it is not (James and
     /// Stein's shrinking). An error measured against the pixel's own radiance would be too small wherever that is too large by chance.
     fn plausible(self, expected: f64) -> f64 {
         let off = self.mean - expected;

@@ -50,7 +50,7 @@ enum Texels {
 
 impl ImageFile {
     /// Reads a file; its content says which format it is, and its ending only where the content does not. An image of more than
-    /// `most` texels is refused as soon as its header tells the size, in the words of `too_many`, which is given that number.
+    /// `most` texels is refused as soon as its header says the size, in the words of `too_many`, which is given that number.
     ///
     /// # Errors
     /// In words that can follow the file's name: it cannot be read, is no image, is damaged, or is too large.

@@ -3,8 +3,8 @@
 //! Triangles are tested in world space, by brute force and through the trees alike: the trees only choose which triangles
 //! are tested, so the two give the same hits to the last bit.
 //!
-//! Where a surface is partly transparent, chance decides whether a ray meets it. `salt` tells the decisions of one ray apart
-//! from those of others ([`crate::sampling::ray_salt`]).
+//! Where a surface is partly transparent, chance decides whether a ray meets it. `salt` makes the decisions of one ray independent
+//! of those of others ([`crate::sampling::ray_salt`]).
 
 use super::hit::{Hit, texture_coordinates};
 use super::rounding::gamma;

@@ -135,7 +135,7 @@ impl Reference {
             if throughput == DVec3::ZERO {
                 break;
             }
-            // Such a path has not found nothing: it is lost, and has to be counted.
+            // A path that overflowed: not black but lost, and it has to be counted.
             if !throughput.is_finite() || !scattered.wi.is_finite() {
                 radiance = DVec3::NAN;
                 break;

@@ -1,7 +1,7 @@
 //! Indirect light: which way a path goes on, and whether it does.
 //!
 //! Three numbers decide. The third, as the slide "Impulse Reflection" has it, is first compared with the probability of an
-//! impulse; what is left of it tells reflection from transmission, or one lobe from the other. The first two choose a
+//! impulse; what is left of it decides between reflection and transmission, or between the lobes. The first two choose a
 //! direction in the lobe.
 
 use super::impulse::reflect;

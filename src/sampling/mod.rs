@@ -27,8 +27,8 @@ pub use random::{random4, uniform};
 pub use sampler::Sampler;
 
 /// Into how many independent parts the samples of a pixel fall: sample `s` is number `s / PARTS` of part `s % PARTS`. Each part has a
-/// scrambling of its own, so that the spread of their means tells the error, which one sequence could not: its samples
-/// depend on each other. More parts would tell the error better, and spread the samples out less well.
+/// scrambling of its own, so that the spread of their means gives an estimate of the error, which one sequence could not: its samples
+/// depend on each other. More parts would give a better estimate, and spread the samples out less well.
 pub const PARTS: u32 = 4;
 
 /// The block that the sensor draws from.
@@ -44,7 +44,7 @@ pub fn scatter_block(bounce: u32) -> u32 {
     2 + 2 * bounce
 }
 
-/// What tells a ray's decisions about transparent surfaces apart from other rays'. `ray` is `2 b` for the ray to bounce `b`,
+/// What makes a ray's decisions about transparent surfaces independent of other rays'. `ray` is `2 b` for the ray to bounce `b`,
 /// `2 b + 1` for the shadow ray from there. Always independent numbers, whatever the sampler: they are few and far between.
 pub fn ray_salt(pixel: u32, sample: u32, ray: u32, seed: u32) -> u32 {
     random4(pixel, sample, 0x8000_0000 | ray, seed)[0]

@@ -14,7 +14,7 @@ pub(super) const DEFAULT_ETA: f32 = 1.5;
 
 /// Indices of refraction that are modelled. Matter has 1 to about 4; the squares of these still leave single precision room.
 pub(super) const ETAS: RangeInclusive<f32> = 0.01..=100.0;
-/// The largest exponent: its lobe is a hundredth of a degree wide, which no picture tells from a mirror.
+/// The largest exponent: its lobe is a hundredth of a degree wide, which in a picture looks like a mirror.
 pub(super) const LARGEST_EXPONENT: f32 = 1e8;
 
 /// What MTL and scene file say about a material.
