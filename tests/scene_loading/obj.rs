@@ -1,7 +1,7 @@
 //! OBJ files, and what a bare one is given.
 
 use super::*;
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use luminaire::scene::{Estimator, Integrator, Luminaire};
 
 #[test]
@@ -69,6 +69,21 @@ fn vertices_are_split_by_texture_coordinate() {
     assert_eq!((mesh.positions.len(), mesh.uvs.len()), (5, 5), "corners 2 of both are one vertex, corners 3 are two");
     assert!(mesh.normals.is_empty());
     warned(&scene, &["mesh.obj:7", "not finite", "0"]);
+}
+
+/// The first vertex at a position is found another way than the rest; neither may come from an earlier run.
+#[test]
+fn vertices_are_numbered_by_first_use_within_a_run_of_one_material() {
+    let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 1\nusemtl a\nf 1/1 2/1 3/1\nf 1/2 2/2 3/1\nf 2/1 1/2 3/1\n\
+                usemtl b\nusemtl a\nf 1/1 2/2 3/1\nusemtl b\nf 1/2 2/1 3/1\nf 1/1 2/1 3/1\nusemtl a\nf 1/1 2/2 3/1\nf 1/2 2/1 3/1\n";
+    let scene = obj(text).load("mesh.obj");
+    let vertices: Vec<_> = scene.meshes[0].triangles.iter().map(|triangle| triangle.vertices).collect();
+    assert_eq!(
+        vertices,
+        [[0, 1, 2], [3, 4, 2], [1, 3, 2], [0, 4, 2], [5, 6, 7], [8, 6, 7], [9, 10, 11], [12, 13, 11]],
+        "a run ends where a face of another material comes"
+    );
+    assert_eq!(scene.meshes[0].uvs[3..5], [Vec2::ONE; 2]);
 }
 
 #[test]
@@ -174,6 +189,14 @@ fn wrong_indices_are_found_with_their_line() {
     obj_fails(&format!("vt 0 0\n{}", TRIANGLE.replace("f 1", "f 1/2")), 5, &["texture coordinate index 2"]);
     obj_fails(&format!("vn 0 0 1\n{}", TRIANGLE.replace("f 1", "f 1//0")), 5, &["normal index is 0"]);
     obj_fails(&format!("vn 0 0 1\n{}", TRIANGLE.replace("f 1", "f 1//-2")), 5, &["relative normal index -2"]);
+}
+
+#[test]
+fn the_first_wrong_line_counts_even_if_only_the_whole_file_shows_it() {
+    obj_fails(&format!("f 1 2 4\n{TRIANGLE}v x\n"), 6, &["vertex needs 3"]);
+    obj_fails(&format!("f 1 2 5\n{TRIANGLE}v x\n"), 1, &["vertex index 5", "the file has 4 vertex lines"]);
+    obj_fails(&format!("f 1/1 2/1 3/1\n{TRIANGLE}v x\nvt 0\n"), 6, &["vertex needs 3"]);
+    obj_fails(&format!("f 1/-1 2/1 3/1\n{TRIANGLE}vt 0\n"), 1, &["relative texture coordinate index -1", "0 texture"]);
 }
 
 #[test]

@@ -1,10 +1,8 @@
 //! The faces of an OBJ file, and the vertex normals that are made from them.
 
 use super::polygon::{self, Cut, Fault};
-use crate::scene::load::text::Tally;
 use glam::{DVec3, Vec3};
 use std::collections::{BTreeMap, HashMap};
-use std::fmt::Write;
 
 /// More faces than this at one point get no normal there by angle: each is compared with each.
 const MOST_FACES_AT_A_POINT: usize = 16_384;
@@ -29,27 +27,37 @@ struct Face {
     line: u32,
 }
 
-/// Polygons that are not what they should be.
-#[derive(Debug, Default)]
-pub(super) struct Faults {
-    /// [`Fault::Tangled`].
-    pub tangled: Tally,
-    /// [`Fault::NotFlat`].
-    pub not_flat: Tally,
-    /// [`Fault::TooLarge`].
-    pub too_large: Tally,
-}
-
 /// A corner, seen from the point at which it lies.
-#[derive(Debug)]
+#[derive(Debug, Clone, Copy, Default)]
 struct Incident {
-    corner: usize,
-    smoothing_group: u32,
-    /// Unit normal of the face; zero if it has no area.
-    normal: DVec3,
+    corner: u32,
+    face: u32,
     /// The angle of the face there: a sum with these weights does not depend on how a surface is cut into faces (Thürmer and
     /// Wüthrich, "Computing Vertex Normals from Polygonal Facets", JGT 3(1), 1998).
     angle: f64,
+}
+
+/// The corners of all faces, sorted by the point at which they lie.
+#[derive(Debug)]
+struct Points {
+    /// One point after the other.
+    incidents: Vec<Incident>,
+    /// For each point, one past the last of its incidents.
+    ends: Vec<u32>,
+    /// Unit normal of each face; zero if it has no area.
+    normals: Vec<DVec3>,
+}
+
+impl Points {
+    /// The corners at each point.
+    fn iter(&self) -> impl Iterator<Item = &[Incident]> {
+        let mut first = 0;
+        self.ends.iter().map(move |end| {
+            let incidents = &self.incidents[first..*end as usize];
+            first = *end as usize;
+            incidents
+        })
+    }
 }
 
 impl Faces {
@@ -59,30 +67,32 @@ impl Faces {
     }
 
     /// A normal for each corner of a face that has a smoothing group and no normals of its own: the mean over the faces of the
-    /// group at that point. Empty if there is no such face.
-    pub(super) fn normals_by_group(&self, positions: &[Vec3]) -> Vec<Option<Vec3>> {
+    /// group at that point; zero for other corners. Empty if there is no such face.
+    pub(super) fn normals_by_group(&self, positions: &[Vec3]) -> Vec<Vec3> {
         let wants = |corners: &[[u32; 3]], face: &Face| {
             face.smoothing_group > 0 && corners.iter().all(|[_, _, normal]| *normal == 0)
         };
         if !self.iter().any(|(corners, face)| wants(corners, face)) {
             return Vec::new();
         }
-        let mut normals = vec![None; self.corners.len()];
-        for incidents in self.points(positions) {
+        let mut normals = vec![Vec3::ZERO; self.corners.len()];
+        let points = self.points(positions);
+        for incidents in points.iter() {
             let mut sums: BTreeMap<u32, DVec3> = BTreeMap::new();
-            for at in incidents.iter().filter(|at| at.smoothing_group > 0) {
-                let part = at.angle * at.normal;
-                sums.entry(at.smoothing_group).and_modify(|sum| *sum += part).or_insert(part);
+            let group = |at: &Incident| self.faces[at.face as usize].smoothing_group;
+            for at in incidents.iter().filter(|at| group(at) > 0) {
+                let part = at.angle * points.normals[at.face as usize];
+                sums.entry(group(at)).and_modify(|sum| *sum += part).or_insert(part);
             }
-            for at in &incidents {
-                let sum = sums.get(&at.smoothing_group);
-                normals[at.corner] = sum.and_then(|sum| sum.try_normalize()).map(DVec3::as_vec3);
+            for at in incidents {
+                let sum = sums.get(&group(at)).copied().unwrap_or_default();
+                normals[at.corner as usize] = sum.normalize_or_zero().as_vec3();
             }
         }
         let mut first = 0;
         for (corners, face) in self.iter() {
             if !wants(corners, face) {
-                normals[first..first + corners.len()].fill(None);
+                normals[first..first + corners.len()].fill(Vec3::ZERO);
             }
             first += corners.len();
         }
@@ -90,98 +100,54 @@ impl Faces {
     }
 
     /// A normal for each corner: the mean over the faces at that point whose normals differ from this face's by less than so many
-    /// degrees. Empty for 0.
-    pub(super) fn normals_by_angle(&self, positions: &[Vec3], degrees: f32) -> Vec<Option<Vec3>> {
+    /// degrees; zero for none. Empty for 0 degrees.
+    pub(super) fn normals_by_angle(&self, positions: &[Vec3], degrees: f32) -> Vec<Vec3> {
         if degrees <= 0.0 {
             return Vec::new();
         }
         let least_cosine = f64::from(degrees).to_radians().cos();
-        let mut normals = vec![None; self.corners.len()];
-        for incidents in self.points(positions).filter(|incidents| incidents.len() <= MOST_FACES_AT_A_POINT) {
-            for this in &incidents {
+        let mut normals = vec![Vec3::ZERO; self.corners.len()];
+        let points = self.points(positions);
+        let normal = |at: &Incident| points.normals[at.face as usize];
+        for incidents in points.iter().filter(|incidents| incidents.len() <= MOST_FACES_AT_A_POINT) {
+            for this in incidents {
                 let near =
-                    |other: &&Incident| other.corner == this.corner || other.normal.dot(this.normal) > least_cosine;
-                let sum: DVec3 = incidents.iter().filter(near).map(|other| other.angle * other.normal).sum();
-                normals[this.corner] = sum.try_normalize().map(DVec3::as_vec3);
+                    |other: &&Incident| other.corner == this.corner || normal(other).dot(normal(this)) > least_cosine;
+                let sum: DVec3 = incidents.iter().filter(near).map(|other| other.angle * normal(other)).sum();
+                normals[this.corner as usize] = sum.normalize_or_zero().as_vec3();
             }
         }
         normals
     }
 
-    /// `usemtl` and `f` lines; only polygons that a fan covers have more than three corners. `made` are further normals,
-    /// appended to `vertices`; `totals` says how many vertices, texture coordinates and normals that text has. One past the last
-    /// texture coordinate stands for none.
-    pub(super) fn text(
+    /// Calls `triangle` with the material and the corners of each triangle, face after face, and `fault` with what is wrong with
+    /// a polygon and its line.
+    pub(super) fn cut(
         &self,
         positions: &[Vec3],
-        totals: [usize; 3],
-        made: &[Option<Vec3>],
-        vertices: &mut String,
-        faults: &mut Faults,
-    ) -> String {
-        const WRITES: &str = "writing to a string";
-        let mut text = String::new();
-        let has_normals = totals[2] > 0 || made.iter().any(Option::is_some);
-        let mut known: HashMap<[u32; 3], usize> = HashMap::new();
-        let mut index_of = |normal: Vec3| {
-            let next = totals[2] + 1 + known.len();
-            *known.entry(normal.to_array().map(f32::to_bits)).or_insert_with(|| {
-                writeln!(vertices, "vn {} {} {}", normal.x, normal.y, normal.z).expect(WRITES);
-                next
-            })
-        };
-        let mut write = |text: &mut String, corner: usize| {
-            let [vertex, uv, normal] = self.corners[corner];
-            write!(text, " {vertex}").expect(WRITES);
-            if totals[1] > 0 {
-                let uv = if uv == 0 { totals[1] + 1 } else { uv as usize };
-                write!(text, "/{uv}").expect(WRITES);
-            }
-            if has_normals {
-                let normal = match (normal, made.get(corner).copied().flatten()) {
-                    (0, normal) => index_of(normal.unwrap_or(Vec3::ZERO)),
-                    (normal, _) => normal as usize,
-                };
-                write!(text, "{}/{normal}", if totals[1] > 0 { "" } else { "/" }).expect(WRITES);
-            }
-        };
-        let (mut first, mut material) = (0, 0);
+        mut triangle: impl FnMut(u32, [[u32; 3]; 3]),
+        mut fault: impl FnMut(Fault, usize),
+    ) {
         let mut outline: Vec<DVec3> = Vec::new();
         for (corners, face) in self.iter() {
-            if face.material != material {
-                material = face.material;
-                writeln!(text, "usemtl {}", material - 1).expect(WRITES);
-            }
-            let mut triangles = None;
+            let mut cut = Cut { triangles: None, fault: None };
             if corners.len() > 3 {
                 outline.clear();
                 outline.extend(corners.iter().map(|[vertex, ..]| positions[*vertex as usize - 1].as_dvec3()));
-                let Cut { triangles: cut, fault } = polygon::cut(&outline);
-                triangles = cut;
-                match fault {
-                    None => {}
-                    Some(Fault::Tangled) => faults.tangled.add(face.line as usize),
-                    Some(Fault::NotFlat) => faults.not_flat.add(face.line as usize),
-                    Some(Fault::TooLarge) => faults.too_large.add(face.line as usize),
-                }
+                cut = polygon::cut(&outline);
             }
-            match triangles {
+            if let Some(what) = cut.fault {
+                fault(what, face.line as usize);
+            }
+            match cut.triangles {
                 None => {
-                    text.push('f');
-                    (first..first + corners.len()).for_each(|corner| write(&mut text, corner));
-                    text.push('\n');
+                    (2..corners.len()).for_each(|k| triangle(face.material, [corners[0], corners[k - 1], corners[k]]))
                 }
                 Some(triangles) => {
-                    for triangle in triangles {
-                        text.push('f');
-                        triangle.iter().for_each(|corner| write(&mut text, first + *corner as usize));
-                        text.push('\n');
-                    }
+                    triangles.iter().for_each(|t| triangle(face.material, t.map(|corner| corners[corner as usize])));
                 }
             }
-            first += corners.len();
         }
-        text
     }
 
     /// Corners and all else of each face.
@@ -195,42 +161,51 @@ impl Faces {
     }
 
     /// The corners at each point. Vertices at the same place are one point, however often the file lists it.
-    fn points(&self, positions: &[Vec3]) -> impl Iterator<Item = Vec<Incident>> {
-        let mut index: HashMap<[u32; 3], usize> = HashMap::new();
-        let mut points: Vec<Vec<Incident>> = Vec::new();
+    fn points(&self, positions: &[Vec3]) -> Points {
+        let mut index: HashMap<[u32; 3], u32> = HashMap::new();
+        let mut number = |position: &Vec3| {
+            let next = index.len() as u32;
+            // Adding 0 makes -0 the same as 0.
+            *index.entry((*position + Vec3::ZERO).to_array().map(f32::to_bits)).or_insert(next)
+        };
+        let point_of: Vec<u32> = positions.iter().map(&mut number).collect();
+        let mut ends = vec![0; index.len()];
+        drop(index);
+        let point_at = |[vertex, ..]: &[u32; 3]| point_of[*vertex as usize - 1] as usize;
+        // Counting sort: how many corners lie at each point, then where they begin; that moves on with each that is filled in.
+        self.corners.iter().for_each(|corner| ends[point_at(corner)] += 1);
+        let mut sum = 0;
+        ends.iter_mut().for_each(|end| sum += std::mem::replace(end, sum));
+        let mut points = Points {
+            incidents: vec![Incident::default(); self.corners.len()],
+            ends,
+            normals: Vec::with_capacity(self.faces.len()),
+        };
         let mut first = 0;
-        for (corners, face) in self.iter() {
-            let at = |corner: usize| positions[corners[corner % corners.len()][0] as usize - 1];
-            let point = |corner: usize| at(corner).as_dvec3();
+        for (face, (corners, _)) in (0..).zip(self.iter()) {
+            let point = |corner: usize| positions[corners[corner % corners.len()][0] as usize - 1].as_dvec3();
             // Newell's method: the area vector of any polygon.
             let edge = |corner: usize| (point(corner) - point(0)).cross(point(corner + 1) - point(0));
-            let normal = (1..corners.len() - 1).map(edge).sum::<DVec3>().normalize_or_zero();
+            points.normals.push((1..corners.len() - 1).map(edge).sum::<DVec3>().normalize_or_zero());
             let count = corners.len();
             let steps = steps_to_others(count, |a, b| point(a) == point(b));
-            for corner in 0..count {
-                // Adding 0 makes -0 the same as 0.
-                let bits = (at(corner) + Vec3::ZERO).to_array().map(f32::to_bits);
+            for (corner, vertex) in corners.iter().enumerate() {
                 // Some corners of a face may lie on each other, at the pole of a sphere for example.
                 let here = point(corner);
                 let [back, forth] = steps.get(corner).copied().unwrap_or([1; 2]);
                 let edge = |other: usize| Some(point(other) - here).filter(|edge| *edge != DVec3::ZERO);
                 let (before, after) = (edge(corner + count - back), edge(corner + forth));
                 let angle = before.zip(after).map_or(0.0, |(a, b)| a.cross(b).length().atan2(a.dot(b)));
-                let incident =
-                    Incident { corner: first + corner, smoothing_group: face.smoothing_group, normal, angle };
-                match index.get(&bits) {
-                    Some(&index) => points[index].push(incident),
-                    None => {
-                        index.insert(bits, points.len());
-                        points.push(vec![incident]);
-                    }
-                }
+                let end = &mut points.ends[point_at(vertex)];
+                points.incidents[*end as usize] = Incident { corner: (first + corner) as u32, face, angle };
+                *end += 1;
             }
-            first += corners.len();
+            first += count;
         }
-        points.into_iter()
+        points
     }
 }
+
 /// For each of the corners of a face, how many steps back and forth it is to the nearest one that lies elsewhere, at most `count`; empty if that is one step
 /// for all. In time proportional to the corners, however many lie on each other.
 fn steps_to_others(count: usize, same: impl Fn(usize, usize) -> bool) -> Vec<[usize; 2]> {

@@ -1,4 +1,4 @@
-//! A mesh from an OBJ file, by `tobj`, which makes one vertex of each triple of position, texture coordinate and normal.
+//! A mesh from an OBJ file: one vertex of each triple of position, texture coordinate and normal.
 
 mod faces;
 mod polygon;
@@ -8,7 +8,7 @@ use super::text::read_text;
 use crate::scene::{Mesh, Triangle};
 use crate::{Error, Result};
 use glam::{DVec3, Vec2, Vec3};
-use std::io::Read;
+use std::collections::HashMap;
 use std::path::Path;
 use text::ObjText;
 
@@ -33,21 +33,23 @@ pub(super) struct Obj {
 /// # Errors
 /// If the file cannot be read, a line of it is wrong, or no triangle is left.
 pub(super) fn read(path: &Path, smooth: Option<f32>) -> Result<Obj> {
-    let ObjText { vertices, faces, materials, libraries, without_uv, mut warnings } =
-        text::normalise(path, &read_text(path)?, smooth)?;
-    let mut text = b"mtllib names\n".chain(vertices.as_bytes()).chain(faces.as_bytes());
-    let names = |_: &Path| {
-        let numbered = |index: usize| tobj::Material { name: index.to_string(), ..Default::default() };
-        let map = (0..materials.len()).map(|index| (index.to_string(), index)).collect();
-        Ok(((0..materials.len()).map(numbered).collect(), map))
-    };
-    let (models, _) = tobj::load_obj_buf(&mut text, &tobj::GPU_LOAD_OPTIONS, names)
-        .map_err(|error| Error::scene(path, format!("the OBJ reader gave up: {error}")))?;
-    let mut mesh = Mesh { name: file_name(path), ..Mesh::default() };
-    let mut dropped = 0;
-    for model in &models {
-        dropped += append(&mut mesh, &model.mesh);
+    // The text itself is given up here: what follows takes as much memory again.
+    let mut text = text::read(path, &read_text(path)?)?;
+    let mut warnings = Vec::new();
+    let has_normals = text.faces.corners.iter().any(|[_, _, normal]| *normal > 0);
+    if smooth.is_some() && has_normals {
+        let path = path.display();
+        warnings.push(format!("{path}: `smooth` is ignored: the file has vertex normals of its own (vn)"));
     }
+    let made = match smooth {
+        Some(degrees) if !has_normals => text.faces.normals_by_angle(&text.positions, degrees),
+        _ => text.faces.normals_by_group(&text.positions),
+    };
+    fill_gaps(&mut text, &made);
+    drop(made);
+    let (mut mesh, dropped) = build(&mut text);
+    mesh.name = file_name(path);
+    text.faults.warn(path, &mut warnings);
     if mesh.triangles.is_empty() {
         let why = match dropped {
             0 => "it has no face with 3 or more corners".to_owned(),
@@ -60,10 +62,65 @@ pub(super) fn read(path: &Path, smooth: Option<f32>) -> Result<Obj> {
     if dropped > 0 {
         warnings.push(format!("{}: {dropped} zero-area triangle(s) dropped", path.display()));
     }
+    let ObjText { materials, libraries, without_uv, .. } = text;
+    Ok(Obj { mesh, materials, libraries, without_uv, warnings })
+}
+
+/// Gives corners that lack a texture coordinate or a normal one of their own, unless none has any: (0, 0), and what was made for
+/// the corner, or zero.
+fn fill_gaps(text: &mut ObjText, made: &[Vec3]) {
+    if !text.uvs.is_empty() {
+        text.uvs.push(Vec2::ZERO);
+        let none = text.uvs.len() as u32;
+        text.faces.corners.iter_mut().filter(|[_, uv, _]| *uv == 0).for_each(|[_, uv, _]| *uv = none);
+    }
+    if text.normals.is_empty() && made.iter().all(|normal| *normal == Vec3::ZERO) {
+        return;
+    }
+    let mut known: HashMap<[u32; 3], u32> = HashMap::new();
+    for (corner, [_, _, index]) in text.faces.corners.iter_mut().enumerate().filter(|(_, [_, _, index])| *index == 0) {
+        let normal = made.get(corner).copied().unwrap_or_default();
+        *index = *known.entry(normal.to_array().map(f32::to_bits)).or_insert_with(|| {
+            text.normals.push(normal);
+            text.normals.len() as u32
+        });
+    }
+}
+
+/// The mesh of corners without gaps, and how many zero-area triangles are left out of it. Takes the faces out of `text`, and adds
+/// to its faults.
+fn build(text: &mut ObjText) -> (Mesh, usize) {
+    let ObjText { positions, uvs, normals, faces, faults, .. } = text;
+    let mut mesh = Mesh::default();
+    let mut vertices = Vertices::of(positions);
+    let (mut last, mut dropped) = (0, 0);
+    let add = |material, corners: [[u32; 3]; 3]| {
+        if material != last {
+            vertices.end_sharing();
+            last = material;
+        }
+        let [a, b, c] = corners.map(|[vertex, ..]| positions[vertex as usize - 1].as_dvec3());
+        // Vertices of what is left out stay, and keep their numbers.
+        let vertices = corners.map(|corner| vertices.number(corner));
+        if (b - a).cross(c - a) == DVec3::ZERO {
+            dropped += 1;
+        } else {
+            mesh.triangles.push(Triangle { vertices, material });
+        }
+    };
+    std::mem::take(faces).cut(positions, add, |fault, line| faults.polygon(fault, line));
+    mesh.positions = vertices.corners.iter().map(|[vertex, ..]| positions[*vertex as usize - 1]).collect();
+    if !uvs.is_empty() {
+        mesh.uvs = vertices.corners.iter().map(|[_, uv, _]| uvs[*uv as usize - 1]).collect();
+    }
+    if !normals.is_empty() {
+        let normal = |index: u32| unit_or_zero(normals[index as usize - 1]);
+        mesh.normals = vertices.corners.iter().map(|[_, _, index]| normal(*index)).collect();
+    }
     if mesh.normals.iter().all(|normal| *normal == Vec3::ZERO) {
         mesh.normals = Vec::new();
     }
-    Ok(Obj { mesh, materials, libraries, without_uv, warnings })
+    (mesh, dropped)
 }
 
 /// The last part of a path.
@@ -71,24 +128,49 @@ pub(super) fn file_name(path: &Path) -> String {
     path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }
 
-/// Adds a model to a mesh; returns how many zero-area triangles it left out.
-fn append(mesh: &mut Mesh, model: &tobj::Mesh) -> usize {
-    let base = mesh.positions.len() as u32;
-    mesh.positions.extend(model.positions.chunks_exact(3).map(Vec3::from_slice));
-    mesh.uvs.extend(model.texcoords.chunks_exact(2).map(Vec2::from_slice));
-    mesh.normals.extend(model.normals.chunks_exact(3).map(|n| unit_or_zero(Vec3::from_slice(n))));
-    let material = model.material_id.map_or(0, |index| index as u32 + 1);
-    let mut dropped = 0;
-    for corners in model.indices.chunks_exact(3) {
-        let vertices = [corners[0], corners[1], corners[2]].map(|corner| base + corner);
-        let [a, b, c] = vertices.map(|vertex| mesh.positions[vertex as usize].as_dvec3());
-        if (b - a).cross(c - a) == DVec3::ZERO {
-            dropped += 1;
-        } else {
-            mesh.triangles.push(Triangle { vertices, material });
-        }
+/// Numbers for triples of position, texture coordinate and normal, in the order of their first use.
+#[derive(Debug)]
+struct Vertices {
+    /// The triple of each vertex.
+    corners: Vec<[u32; 3]>,
+    /// For each position, 1 + the first vertex there; 0 for none.
+    first: Vec<u32>,
+    /// The other vertices. Most meshes have few, and are numbered without hashing.
+    others: HashMap<[u32; 3], u32>,
+    /// Vertices before this one are not used again.
+    begin: u32,
+}
+
+impl Vertices {
+    fn of(positions: &[Vec3]) -> Self {
+        Vertices { corners: Vec::new(), first: vec![0; positions.len()], others: HashMap::new(), begin: 0 }
     }
-    dropped
+
+    /// Equal triples before and after this call are different vertices.
+    fn end_sharing(&mut self) {
+        self.begin = self.corners.len() as u32;
+    }
+
+    fn number(&mut self, corner: [u32; 3]) -> u32 {
+        let next = self.corners.len() as u32;
+        let first = &mut self.first[corner[0] as usize - 1];
+        let number = if *first <= self.begin {
+            *first = next + 1;
+            next
+        } else if self.corners[*first as usize - 1] == corner {
+            *first - 1
+        } else {
+            let other = self.others.entry(corner).or_insert(next);
+            if *other < self.begin {
+                *other = next;
+            }
+            *other
+        };
+        if number == next {
+            self.corners.push(corner);
+        }
+        number
+    }
 }
 
 /// In double precision, because the square of a short `f32` vector can vanish.

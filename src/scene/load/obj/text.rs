@@ -1,141 +1,124 @@
-//! The text of an OBJ file, checked line by line and rewritten to what `tobj` reads without a quirk.
+//! The text of an OBJ file, line by line.
 //!
-//! `tobj` stops a whole file without naming the line, mixes up the normals of a mesh in which only some corners have one,
-//! takes `l` lines for faces, and wants every vertex coloured if one is. So each line is checked here first, and `tobj` receives
-//! plain `v`, `vt`, `vn`, `usemtl` and `f` lines with absolute, valid indices.
+//! Read here and not by a crate: `tobj` stops a whole file without naming the line, takes `l` lines for faces, leaves out what a
+//! corner lacks so that the normals of a mesh no longer belong to its vertices, and wants every vertex coloured if one is.
 
-use super::faces::{Faces, Faults};
-use super::polygon::MOST_CORNERS;
-use crate::scene::load::text::{Tally, shortened};
+use super::faces::Faces;
+use super::polygon::{Fault, MOST_CORNERS};
+use crate::scene::load::text::{Tally, logical_lines, shortened};
 use crate::{Error, Result};
-use glam::Vec3;
-use std::borrow::Cow;
-use std::collections::{HashMap, HashSet};
-use std::fmt::Write;
+use glam::{Vec2, Vec3};
+use std::collections::HashMap;
 use std::path::Path;
 
-/// What an OBJ file says, without its errors.
+/// What an OBJ file says.
 #[derive(Debug, Default)]
 pub(super) struct ObjText {
-    /// `v`, `vt` and `vn` lines.
-    pub vertices: String,
-    /// `f` and `usemtl` lines; `usemtl` carries an index into `materials`.
-    pub faces: String,
-    /// Materials (0 for none, else 1 + an index into `materials`) of faces that lack a texture coordinate, with the line of the
-    /// first.
+    /// `v` lines, divided by the weight if they have one; all finite.
+    pub positions: Vec<Vec3>,
+    /// `vt` lines: the first two numbers, 0 for what is not there or not finite.
+    pub uvs: Vec<Vec2>,
+    /// `vn` lines, of any length; zero for what is not finite.
+    pub normals: Vec<Vec3>,
+    /// `f` lines; a material is 0 for none, else 1 + an index into `materials`.
+    pub faces: Faces,
+    /// Materials, numbered as in `faces`, of faces that lack a texture coordinate, with the line of the first.
     pub without_uv: Vec<(usize, usize)>,
     /// Material names in the order of their first use, with the line of it.
     pub materials: Vec<(String, usize)>,
     /// What follows `mtllib`, with its line.
     pub libraries: Vec<(String, usize)>,
-    /// What was skipped.
-    pub warnings: Vec<String>,
+    /// What is worth a warning.
+    pub faults: Faults,
 }
 
-/// What an index can point to, in the order of `v/vt/vn`.
-const KINDS: [&str; 3] = ["vertex", "texture coordinate", "normal"];
-
-/// Checks and rewrites an OBJ file. `smooth` (degrees) replaces smoothing groups where no face has normals.
-///
-/// # Errors
-/// [`Error::Parse`] for the first line that holds a bad number, a vertex that is not finite, or a bad index.
-pub(super) fn normalise(path: &Path, text: &str, smooth: Option<f32>) -> Result<ObjText> {
-    let mut totals = [0; 3];
-    for (_, line) in logical_lines(text) {
-        if let Some(kind) = line.split_ascii_whitespace().next().and_then(element_kind) {
-            totals[kind] += 1;
-        }
-    }
-    let mut scan = Scan::new(path, totals);
-    for (number, line) in logical_lines(text) {
-        scan.line(number, &line)?;
-    }
-    Ok(scan.finish(smooth))
-}
-
-/// Lines with their number, where a backslash at the end joins the next one.
-fn logical_lines(text: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
-    let mut lines = text.lines().zip(1..);
-    std::iter::from_fn(move || {
-        let (line, number) = lines.next()?;
-        let line = line.trim();
-        let Some(head) = line.strip_suffix('\\').filter(|head| !head.starts_with('#')) else {
-            return Some((number, Cow::Borrowed(line)));
-        };
-        let mut joined = head.to_owned();
-        for (line, _) in lines.by_ref() {
-            joined.push(' ');
-            match line.trim().strip_suffix('\\') {
-                Some(head) => joined.push_str(head),
-                None => {
-                    joined.push_str(line.trim());
-                    break;
-                }
-            }
-        }
-        // A line of nothing but a backslash leaves a blank in front.
-        Some((number, Cow::Owned(joined.trim().to_owned())))
-    })
-}
-
-/// Index into [`KINDS`] of a keyword that defines something.
-fn element_kind(keyword: &str) -> Option<usize> {
-    match keyword {
-        "v" => Some(0),
-        "vt" => Some(1),
-        "vn" => Some(2),
-        _ => None,
-    }
-}
-
-struct Scan<'a> {
-    path: &'a Path,
-    /// How many of each of [`KINDS`] the file has.
-    totals: [usize; 3],
-    /// How many precede the current line.
-    counts: [usize; 3],
-    /// Positions, for normals that are made from the faces.
-    positions: Vec<Vec3>,
-    faces: Faces,
-    /// 0 for none, else 1 + an index into `out.materials`.
-    material: usize,
-    smoothing_group: u32,
-    by_name: HashMap<String, usize>,
-    /// The materials of `out.without_uv`.
-    without_uv: HashSet<usize>,
-    out: ObjText,
+/// What is wrong with an OBJ file and does not keep it from being loaded.
+#[derive(Debug, Default)]
+pub(super) struct Faults {
     short_faces: Tally,
+    tangled: Tally,
+    not_flat: Tally,
+    too_large: Tally,
     unknown: Tally,
     unknown_keyword: String,
+    /// Indices into what the file has none of; in the order of [`KINDS`].
     dangling: [Tally; 3],
     bad_normals: Tally,
     bad_uvs: Tally,
     bad_groups: Tally,
 }
 
-impl<'a> Scan<'a> {
-    fn new(path: &'a Path, totals: [usize; 3]) -> Self {
-        Scan {
-            path,
-            totals,
-            counts: [0; 3],
-            positions: Vec::new(),
-            faces: Faces::default(),
-            material: 0,
-            smoothing_group: 0,
-            by_name: HashMap::new(),
-            without_uv: HashSet::new(),
-            out: ObjText::default(),
-            short_faces: Tally::default(),
-            unknown: Tally::default(),
-            unknown_keyword: String::new(),
-            dangling: Default::default(),
-            bad_normals: Tally::default(),
-            bad_uvs: Tally::default(),
-            bad_groups: Tally::default(),
+impl Faults {
+    /// Counts a polygon on line `line` that cannot be cut as it should be.
+    pub(super) fn polygon(&mut self, fault: Fault, line: usize) {
+        match fault {
+            Fault::Tangled => self.tangled.add(line),
+            Fault::NotFlat => self.not_flat.add(line),
+            Fault::TooLarge => self.too_large.add(line),
         }
     }
 
+    /// One warning for each kind that was met.
+    pub(super) fn warn(&self, path: &Path, warnings: &mut Vec<String>) {
+        let too_large =
+            format!("a polygon of more than {MOST_CORNERS} corners that is not convex; it is cut as if it were");
+        let unknown = format!("a line with the keyword `{}`, which is not modelled, is skipped", self.unknown_keyword);
+        for (tally, what) in [
+            (&self.short_faces, "a face with fewer than 3 corners is skipped"),
+            (&self.tangled, "a polygon whose outline crosses or covers itself; its triangles are a guess"),
+            (&self.not_flat, "a polygon whose corners do not lie in a plane; its triangles are a guess"),
+            (&self.too_large, &too_large),
+            (&self.unknown, &unknown),
+            (&self.dangling[1], "a texture coordinate index, but the file has none; ignored"),
+            (&self.dangling[2], "a normal index, but the file has no normals; ignored"),
+            (&self.bad_normals, "a normal that is not finite is ignored"),
+            (&self.bad_uvs, "a texture coordinate that is not finite counts as 0"),
+            (&self.bad_groups, "a smoothing group that is no number counts as off"),
+        ] {
+            tally.warn(path, what, warnings);
+        }
+    }
+}
+
+/// What an index can point to, in the order of `v/vt/vn`.
+const KINDS: [&str; 3] = ["vertex", "texture coordinate", "normal"];
+
+/// Reads the text of an OBJ file.
+///
+/// # Errors
+/// [`Error::Parse`] for the first line that holds a bad number, a vertex that is not finite, or a bad index.
+pub(super) fn read(path: &Path, text: &str) -> Result<ObjText> {
+    let mut scan = Scan {
+        path,
+        text,
+        totals: None,
+        material: 0,
+        smoothing_group: 0,
+        by_name: HashMap::new(),
+        without_uv: vec![false],
+        out: ObjText::default(),
+    };
+    for (number, line) in logical_lines(text) {
+        scan.line(number, &line)?;
+    }
+    Ok(scan.out)
+}
+
+struct Scan<'a> {
+    path: &'a Path,
+    text: &'a str,
+    /// How many of each of [`KINDS`] the whole file has, once something has asked.
+    totals: Option<[usize; 3]>,
+    /// 0 for none, else 1 + an index into `out.materials`.
+    material: usize,
+    smoothing_group: u32,
+    by_name: HashMap<String, usize>,
+    /// For each material, whether `out.without_uv` has it.
+    without_uv: Vec<bool>,
+    out: ObjText,
+}
+
+impl Scan<'_> {
     fn error<T>(&self, line: usize, message: String) -> Result<T> {
         Err(Error::Parse { path: self.path.to_owned(), line, column: 0, message })
     }
@@ -155,14 +138,12 @@ impl<'a> Scan<'a> {
             "o" | "g" | "l" | "p" => {}
             comment if comment.starts_with('#') => {}
             other => {
-                if self.unknown_keyword.is_empty() {
-                    self.unknown_keyword = shortened(other).into_owned();
+                let faults = &mut self.out.faults;
+                if faults.unknown_keyword.is_empty() {
+                    faults.unknown_keyword = shortened(other).into_owned();
                 }
-                self.unknown.add(number);
+                faults.unknown.add(number);
             }
-        }
-        if let Some(kind) = element_kind(keyword) {
-            self.counts[kind] += 1;
         }
         Ok(())
     }
@@ -203,13 +184,7 @@ impl<'a> Scan<'a> {
         if !position.is_finite() {
             return self.error(line, format!("the vertex {} is not finite", shortened(&kept[..used].join(" "))));
         }
-        self.positions.push(position);
-        self.out.vertices.push_str("v ");
-        for word in &kept[..used] {
-            self.out.vertices.push_str(word);
-            self.out.vertices.push(' ');
-        }
-        self.out.vertices.push('\n');
+        self.out.positions.push(position);
         Ok(())
     }
 
@@ -227,10 +202,10 @@ impl<'a> Scan<'a> {
             return self.error(line, "a texture coordinate needs 1 to 3 numbers, found none".into());
         }
         if !uv.iter().all(|n| n.is_finite()) {
-            self.bad_uvs.add(line);
+            self.out.faults.bad_uvs.add(line);
             uv = [0.0; 2];
         }
-        writeln!(self.out.vertices, "vt {} {}", uv[0], uv[1]).expect("writing to a string");
+        self.out.uvs.push(Vec2::from(uv));
         Ok(())
     }
 
@@ -248,11 +223,10 @@ impl<'a> Scan<'a> {
             return self.error(line, format!("a normal needs 3 numbers, found {count}"));
         }
         if !numbers.iter().all(|n| n.is_finite()) {
-            self.bad_normals.add(line);
+            self.out.faults.bad_normals.add(line);
             numbers = [0.0; 3];
         }
-        let [x, y, z] = numbers;
-        writeln!(self.out.vertices, "vn {x} {y} {z}").expect("writing to a string");
+        self.out.normals.push(Vec3::from(numbers));
         Ok(())
     }
 
@@ -262,7 +236,7 @@ impl<'a> Scan<'a> {
             "off" => 0,
             "on" => 1,
             number => number.parse().unwrap_or_else(|_| {
-                self.bad_groups.add(line);
+                self.out.faults.bad_groups.add(line);
                 0
             }),
         };
@@ -273,12 +247,13 @@ impl<'a> Scan<'a> {
         let index = *self.by_name.entry(name.to_owned()).or_insert(next);
         if index == next {
             self.out.materials.push((name.to_owned(), line));
+            self.without_uv.push(false);
         }
         self.material = index + 1;
     }
 
     fn face<'w>(&mut self, line: usize, words: impl Iterator<Item = &'w str>) -> Result<()> {
-        let first = self.faces.corners.len();
+        let first = self.out.faces.corners.len();
         for word in words {
             let mut indices = [0; 3];
             let mut parts = word.split('/');
@@ -293,91 +268,65 @@ impl<'a> Scan<'a> {
                 return self
                     .error(line, format!("`{}` is not a corner; expected v, v/vt, v//vn or v/vt/vn", shortened(word)));
             }
-            self.faces.corners.push(indices.map(|index| index as u32));
+            self.out.faces.corners.push(indices);
         }
-        if self.faces.corners.len() < first + 3 {
-            self.faces.corners.truncate(first);
-            self.short_faces.add(line);
+        if self.out.faces.corners.len() < first + 3 {
+            self.out.faces.corners.truncate(first);
+            self.out.faults.short_faces.add(line);
             return Ok(());
         }
-        let lacks_uv = self.faces.corners[first..].iter().any(|[_, uv, _]| *uv == 0);
-        if lacks_uv && self.without_uv.insert(self.material) {
+        let lacks_uv = self.out.faces.corners[first..].iter().any(|[_, uv, _]| *uv == 0);
+        if lacks_uv && !std::mem::replace(&mut self.without_uv[self.material], true) {
             self.out.without_uv.push((self.material, line));
         }
-        self.faces.end_face(self.material as u32, self.smoothing_group, line);
+        self.out.faces.end_face(self.material as u32, self.smoothing_group, line);
         Ok(())
     }
 
     /// The absolute index, from 1, that `part` of the corner `word` stands for; 0 where the file has nothing of that kind.
-    fn index(&mut self, line: usize, word: &str, kind: usize, part: &str) -> Result<usize> {
+    fn index(&mut self, line: usize, word: &str, kind: usize, part: &str) -> Result<u32> {
         let name = KINDS[kind];
-        let (total, count) = (self.totals[kind], self.counts[kind]);
-        let shown = shortened(word);
+        let shown = || shortened(word);
         let Ok(index) = part.parse::<i64>() else {
-            let part = shortened(part);
+            let (shown, part) = (shown(), shortened(part));
             return self
                 .error(line, format!("`{shown}`: the {name} index `{part}` is not a whole number within 64 bits"));
         };
         if index == 0 {
-            return self.error(line, format!("`{shown}`: the {name} index is 0, but OBJ files count from 1"));
+            return self.error(line, format!("`{}`: the {name} index is 0, but OBJ files count from 1", shown()));
         }
-        if kind > 0 && total == 0 {
-            self.dangling[kind].add(line);
-            return Ok(0);
-        }
+        let count = [self.out.positions.len(), self.out.uvs.len(), self.out.normals.len()][kind];
         let absolute = if index < 0 { count as i64 + 1 + index } else { index };
-        if absolute < 1 {
-            return self.error(
-                line,
-                format!(
-                    "`{shown}`: the relative {name} index {index} is out of range, {count} {name} lines precede it"
-                ),
-            );
+        // Only what does not point back makes it matter how much of its kind is still to come.
+        if absolute < 1 || absolute > count as i64 {
+            let total = self.totals.get_or_insert_with(|| totals(self.text))[kind];
+            if kind > 0 && total == 0 {
+                self.out.faults.dangling[kind].add(line);
+                return Ok(0);
+            }
+            let why = match absolute {
+                ..1 => format!("the relative {name} index {index} is out of range, {count} {name} lines precede it"),
+                _ if absolute > total as i64 => {
+                    format!("the {name} index {index} is out of range, the file has {total} {name} lines")
+                }
+                _ => return Ok(absolute as u32),
+            };
+            return self.error(line, format!("`{}`: {why}", shown()));
         }
-        if absolute > total as i64 {
-            return self.error(
-                line,
-                format!("`{shown}`: the {name} index {index} is out of range, the file has {total} {name} lines"),
-            );
-        }
-        Ok(absolute as usize)
+        Ok(absolute as u32)
     }
+}
 
-    fn finish(mut self, smooth: Option<f32>) -> ObjText {
-        // What corners without a texture coordinate or a normal refer to, in a file that has some.
-        if self.totals[1] > 0 {
-            self.out.vertices.push_str("vt 0 0\n");
+/// How many of each of [`KINDS`] a file has.
+fn totals(text: &str) -> [usize; 3] {
+    let mut totals = [0; 3];
+    for (_, line) in logical_lines(text) {
+        match line.split_ascii_whitespace().next() {
+            Some("v") => totals[0] += 1,
+            Some("vt") => totals[1] += 1,
+            Some("vn") => totals[2] += 1,
+            _ => {}
         }
-        let has_normals = self.faces.corners.iter().any(|[_, _, normal]| *normal > 0);
-        let made = match smooth {
-            Some(degrees) if !has_normals => self.faces.normals_by_angle(&self.positions, degrees),
-            _ => self.faces.normals_by_group(&self.positions),
-        };
-        let mut faults = Faults::default();
-        self.out.faces = self.faces.text(&self.positions, self.totals, &made, &mut self.out.vertices, &mut faults);
-        let warnings = &mut self.out.warnings;
-        if smooth.is_some() && has_normals {
-            let path = self.path.display();
-            warnings.push(format!("{path}: `smooth` is ignored: the file has vertex normals of its own (vn)"));
-        }
-        self.short_faces.warn(self.path, "a face with fewer than 3 corners is skipped", warnings);
-        let Faults { tangled, not_flat, too_large } = faults;
-        tangled.warn(
-            self.path,
-            "a polygon whose outline crosses or covers itself; its triangles are a guess",
-            warnings,
-        );
-        not_flat.warn(self.path, "a polygon whose corners do not lie in a plane; its triangles are a guess", warnings);
-        let too_large_what =
-            format!("a polygon of more than {MOST_CORNERS} corners that is not convex; it is cut as if it were");
-        too_large.warn(self.path, &too_large_what, warnings);
-        let unknown = format!("a line with the keyword `{}`, which is not modelled, is skipped", self.unknown_keyword);
-        self.unknown.warn(self.path, &unknown, warnings);
-        self.dangling[1].warn(self.path, "a texture coordinate index, but the file has none; ignored", warnings);
-        self.dangling[2].warn(self.path, "a normal index, but the file has no normals; ignored", warnings);
-        self.bad_normals.warn(self.path, "a normal that is not finite is ignored", warnings);
-        self.bad_uvs.warn(self.path, "a texture coordinate that is not finite counts as 0", warnings);
-        self.bad_groups.warn(self.path, "a smoothing group that is no number counts as off", warnings);
-        self.out
     }
+    totals
 }
