@@ -22,7 +22,7 @@ pub struct Run {
 }
 
 impl Run {
-    /// Goes on from `rendered` until every pixel has all samples before number `end`. What the film holds tells which batches are left.
+    /// Goes on from `rendered` until every pixel has all samples before number `end`. Which batches are left follows from what the film holds.
     pub fn new(rendered: Rendered, end: u32) -> Self {
         let schedule = Schedule::of(&rendered.film, end);
         let next_estimate = rendered.progress.seconds + ESTIMATE_SECONDS;

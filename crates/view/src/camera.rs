@@ -37,7 +37,7 @@ impl Axes {
     }
 }
 
-/// A sensor with another eye point and target; as it was if single precision could not tell the two apart, or they would be too far away.
+/// A sensor with another eye point and target; as it was if the two were one point in single precision, or they would be too far away.
 fn placed(sensor: &Sensor, position: DVec3, target: DVec3) -> Sensor {
     let reach = position.abs().max(target.abs()).max_element();
     let nearest = (NEAREST * reach).max(f64::from(f32::MIN_POSITIVE));

@@ -59,7 +59,8 @@ impl Chain {
         match chain.fill(device, &info) {
             Ok(()) => Ok(chain),
             Err(e) => {
-                chain.destroy(device);
+                // SAFETY: nothing of it was used yet.
+                unsafe { chain.destroy(device) };
                 Err(e)
             }
         }
@@ -107,7 +108,7 @@ impl Chain {
     /// Records the copy of the staging memory to an image.
     ///
     /// # Safety
-    /// `commands` is being recorded, and its submission waits at the stage of transfers until the image was acquired.
+    /// `commands` of the device that this was made with is being recorded, and its submission waits at the stage of transfers until the image was acquired.
     pub(super) unsafe fn record(&self, device: &Device, commands: vk::CommandBuffer, image: usize) {
         let colour = vk::ImageAspectFlags::COLOR;
         let range = vk::ImageSubresourceRange::default().aspect_mask(colour).level_count(1).layer_count(1);
@@ -133,8 +134,11 @@ impl Chain {
         }
     }
 
-    /// Frees everything. The device must have come to rest.
-    pub(super) fn destroy(self, device: &Device) {
+    /// Frees everything.
+    ///
+    /// # Safety
+    /// It was made with this device, which has come to rest.
+    pub(super) unsafe fn destroy(self, device: &Device) {
         // SAFETY: the handles are null or of this device, which uses none of them any more; freeing unmaps.
         unsafe {
             device.raw.destroy_buffer(self.buffer, None);

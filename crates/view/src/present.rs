@@ -118,13 +118,15 @@ impl Presenter {
     pub fn drop_chain(&mut self) {
         if let Some(chain) = self.chain.take() {
             self.device.rest();
-            chain.destroy(&self.device);
+            // SAFETY: every chain here is made with this device, which rests.
+            unsafe { chain.destroy(&self.device) };
         }
     }
 
     fn new_surface(&mut self) -> Result<()> {
         self.drop_chain();
-        self.surface.renew()?;
+        // SAFETY: the swapchain was dropped.
+        unsafe { self.surface.renew() }?;
         self.device.check_presents_to(&self.surface)
     }
 

@@ -48,14 +48,17 @@ impl Surface {
         Ok(Surface { raw, calls, instance: instance.clone(), window: window.clone() })
     }
 
-    /// Makes the surface anew, because it was lost. Its swapchain must be gone.
+    /// Makes the surface anew, because it was lost.
     ///
     /// # Errors
     /// If the window cannot be drawn into any more.
-    pub fn renew(&mut self) -> Result<()> {
+    ///
+    /// # Safety
+    /// Its swapchain is gone.
+    pub unsafe fn renew(&mut self) -> Result<()> {
         let (instance, window) = (self.instance.clone(), self.window.clone());
         // Windows have one surface at a time: the old one goes first.
-        // SAFETY: its swapchain is gone, as the caller promises. A null handle takes its place, which `drop` may destroy again.
+        // SAFETY: the caller's promise. A null handle takes its place, which `drop` may destroy again.
         unsafe { self.calls.destroy_surface(self.raw, None) };
         self.raw = vk::SurfaceKHR::null();
         *self = Surface::new(&instance, &window)?;
