@@ -1,6 +1,6 @@
 //! What the camera sees first, over a whole film.
 
-use super::Tracer;
+use super::tracer::Tracer;
 use crate::Result;
 use crate::film::{Aovs, Tile};
 

@@ -1,31 +1,32 @@
 //! The progressive loop: batches, limits (samples, time, noise), progress, cancellation.
 //!
-//! Samples are summed in groups of one part each ([`PARTS`]), whose bounds depend on the sample's index alone:
+//! Samples are summed in groups of one part each ([`PARTS`](crate::sampling::PARTS)), whose bounds depend on the sample's index alone:
 //! within a part 0, 1, 2, 4, then every 4. A batch is one tile and some whole groups of every part, as many as a device does in the time it
 //! asks for. How the work was cut into batches therefore never shows in the picture: the same groups are added in the same order, to
-//! the last bit. A limit of the noise is looked at after numbers of samples that follow from the picture alone, so that neither it depends on
-//! the device's speed.
+//! the last bit. A limit of the noise is looked at after numbers of samples that follow from the picture alone, so it does not depend on the
+//! device's speed either.
+//!
+//! [`render`] and [`resume`] are the whole loop; a program that has other things to do between two batches does the [steps](Run::step) itself.
 
 mod aovs;
+mod budget;
 mod progress;
 mod rendered;
+mod run;
 mod schedule;
 mod tracer;
 
 pub use aovs::aovs;
+pub use budget::{Budget, Pace};
 pub use progress::{LEAST_FOR_NOISE, Limits, Progress};
 pub use rendered::{DROPPED_NAMED, End, Rendered};
+pub use run::Run;
 pub(crate) use schedule::is_a_pass;
-pub use schedule::{FIRST_BUDGET, Schedule, next_budget};
 pub use tracer::{SceneTracer, Traced, Tracer};
 
 use crate::Result;
-use rendered::samples_of;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
-
-/// Seconds between two estimates of the error for the progress.
-const ESTIMATE_SECONDS: f64 = 1.0;
 
 /// Renders `width` by `height` pixels until a limit is met or `stop` is set, calling `progress` after each batch.
 ///
@@ -44,7 +45,7 @@ pub fn render(
 /// Goes on with a render until a limit is met or `stop` is set, calling `watch` after each batch.
 ///
 /// A render that was ended and resumed gives the same picture as one that was not, to the last bit, if the limits and the tracer are the
-/// same: what the film holds tells which batches are left.
+/// same: which batches are left follows from what the film holds.
 pub fn resume(
     tracer: &mut dyn Tracer,
     mut rendered: Rendered,
@@ -52,67 +53,55 @@ pub fn resume(
     watch: &mut dyn FnMut(&Rendered),
     stop: &AtomicBool,
 ) -> Rendered {
-    let max_sums = tracer.max_sums();
-    let mut schedule = Schedule::of(&rendered.film, limits.spp.unwrap_or(u32::MAX));
-    let mut budget = FIRST_BUDGET;
+    let mut budget = Budget::new(Pace::OfTracer);
     let before = rendered.progress.seconds;
     let start = Instant::now();
-    let mut next_estimate = ESTIMATE_SECONDS;
+    // Also what `watch` does takes time.
+    let elapsed = || before + start.elapsed().as_secs_f64();
     rendered.progress.limits = limits;
     rendered.end = End::Samples;
-    if let Some(limit) = limits.noise {
+    if limits.noise.is_some() {
         // An earlier run may have had no such limit.
         rendered.noise_aim = rendered.noise_aim.max(rendered.film.most_samples());
-        if schedule.pass_done() == Some(rendered.noise_aim) && rendered.quiet_enough(limit) {
-            rendered.end = End::Noise;
-            return rendered;
-        }
-        schedule.aim(rendered.noise_aim);
     }
-    while let Some(batch) = schedule.next(budget, max_sums) {
+    let mut run = Run::new(rendered, limits.spp.unwrap_or(u32::MAX));
+    if let Some(limit) = limits.noise {
+        if run.is_at_noise_aim() && run.is_quiet_enough(limit) {
+            return Rendered { end: End::Noise, ..run.into_rendered() };
+        }
+        run.aim_at_noise();
+    }
+    let mut end = End::Samples;
+    while !run.is_done() {
         if stop.load(Ordering::Relaxed) {
-            rendered.end = End::Stopped;
+            end = End::Stopped;
             break;
         }
-        if limits.seconds.is_some_and(|limit| before + start.elapsed().as_secs_f64() >= limit) {
-            rendered.end = End::Time;
+        if limits.seconds.is_some_and(|limit| elapsed() >= limit) {
+            end = End::Time;
             break;
         }
-        let batch_start = Instant::now();
-        let traced = match tracer.trace(&batch) {
-            Ok(traced) => traced,
-            Err(error) => {
-                rendered.end = End::Failed(error);
-                break;
-            }
-        };
-        let seconds = traced.device_seconds.unwrap_or_else(|| batch_start.elapsed().as_secs_f64());
-        budget = next_budget(budget, samples_of(&batch), seconds, tracer.batch_seconds());
-        rendered.add(&batch, &traced);
-        rendered.progress.seconds = before + start.elapsed().as_secs_f64();
-        let pass_done = schedule.pass_done();
-        let noise = limits.noise.filter(|_| pass_done == Some(rendered.noise_aim));
+        if let Err(error) = run.step(tracer, &mut budget) {
+            end = End::Failed(error);
+            break;
+        }
+        run.set_seconds(elapsed());
         let mut quiet = false;
-        if let Some(limit) = noise {
-            quiet = rendered.quiet_enough(limit);
-            schedule.aim(rendered.noise_aim);
-        } else if pass_done.is_some() && start.elapsed().as_secs_f64() >= next_estimate {
-            // Where nothing depends on it, only so often that it costs nothing.
-            let estimate = Instant::now();
-            rendered.progress.error = rendered.film.error();
-            next_estimate =
-                start.elapsed().as_secs_f64() + ESTIMATE_SECONDS.max(20.0 * estimate.elapsed().as_secs_f64());
+        if let Some(limit) = limits.noise.filter(|_| run.is_at_noise_aim()) {
+            quiet = run.is_quiet_enough(limit);
+        } else if run.is_between_passes() && run.estimate_is_due() {
+            run.estimate();
         }
-        watch(&rendered);
+        watch(run.rendered());
         if quiet {
-            rendered.end = End::Noise;
+            end = End::Noise;
             break;
         }
     }
-    rendered.progress.seconds = before + start.elapsed().as_secs_f64();
+    run.set_seconds(elapsed());
     // Also of what a render did that ended in the middle of a pass.
-    rendered.progress.error = rendered.film.error();
-    rendered
+    run.estimate();
+    Rendered { end, ..run.into_rendered() }
 }
 
 #[cfg(test)]
@@ -209,6 +198,29 @@ mod tests {
     }
 
     #[test]
+    fn steps_by_another_clock_give_the_same_film() {
+        let size = (37, 23);
+        // By the clock of its device it would be slow.
+        let mut fake = Fake { sample_seconds: 1.0, ..Fake::new(size.0, 10_000_000, 1e9) };
+        let mut budget = Budget::new(Pace::WithinSeconds(1e9));
+        let mut stepped = Run::new(Rendered::nothing(size, 0).unwrap(), 71);
+        while !stepped.is_done() {
+            let before = budget.samples();
+            stepped.step(&mut fake, &mut budget).unwrap();
+            assert!(budget.samples() >= before);
+        }
+        let batches = fake.batches.len();
+        stepped.step(&mut fake, &mut budget).unwrap();
+        assert_eq!(fake.batches.len(), batches, "nothing is left to do");
+        let rendered = run(&mut Fake::new(size.0, 100, 1e-3), size, 71);
+        assert!(stepped.rendered().film == rendered.film);
+        assert_eq!(stepped.rendered().progress.spp(), 71.0);
+        assert!(!stepped.estimate_is_due(), "less than a second was traced");
+        stepped.estimate();
+        assert_eq!(stepped.into_rendered().progress.error, rendered.progress.error);
+    }
+
+    #[test]
     fn aovs_come_in_the_order_of_the_pixels() {
         for (size, max_sums) in [((37, 23), 1 << 20), ((37, 23), 100), ((37, 23), 10), ((3, 2), 4), ((1, 5), 4)] {
             let mut fake = Fake::new(size.0, max_sums, 1.0);
@@ -255,11 +267,6 @@ mod tests {
         }
         assert!(largest > 90_000, "{samples:?}");
         assert!(samples.iter().all(|s| *s <= 100_000), "{samples:?}");
-        // A device that turns out slow: 0.01 s a sample against a target of 0.1 s.
-        assert_eq!(next_budget(4096, 4096, 40.96, 0.1), 10);
-        assert_eq!(next_budget(10, 10, 0.1, 0.1), 10);
-        assert_eq!(next_budget(1000, 100, 0.01, 0.1), 1000);
-        assert_eq!(next_budget(1, 1, 100.0, 0.1), 1);
     }
 
     #[test]

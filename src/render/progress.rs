@@ -18,7 +18,7 @@ pub struct Limits {
 /// No noise limit is met before this many samples a pixel: fewer may all have missed the same light.
 pub const LEAST_FOR_NOISE: u32 = 8 * PARTS;
 
-/// How far a render is, told after each batch.
+/// How far a render is.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Progress {
     /// Number of the first sample of every pixel.

@@ -3,26 +3,12 @@
 use crate::film::{Batch, Film, Tile};
 use crate::sampling::PARTS;
 
-/// Samples (over all pixels) of the first batch: few, because each may be a path of ten thousand bounces.
-pub const FIRST_BUDGET: u64 = 64;
-
 /// The most samples of a pixel in one batch: a workgroup for each group of every part, and as many as every Vulkan device takes along an axis.
 const MAX_PASS: u64 = 65_535 * (LONGEST * PARTS) as u64;
 
 /// The most samples of one group: few enough to add them up in `f32`, and that an invocation of the kernel, which takes a group of every part,
 /// stays short (Mesa before 23 ends a shader's loops after 65 535 rounds).
 const LONGEST: u32 = 4;
-
-/// How many samples the next batch may hold, after one of `samples` took `seconds`: less at once if that was too long, else at
-/// most four times as many. A small batch (the rest of a pass) that took little says nothing against the present budget.
-pub fn next_budget(budget: u64, samples: u64, seconds: f64, target: f64) -> u64 {
-    let fitting = samples as f64 * target / seconds.max(1e-9);
-    if seconds > target {
-        (fitting as u64).clamp(1, budget)
-    } else {
-        budget.max(fitting.min(4.0 * samples as f64) as u64)
-    }
-}
 
 /// Samples in the groups that begin at sample `start`: powers of two up to 4, then 4.
 pub(super) fn group_length(start: u32) -> u32 {
@@ -51,7 +37,7 @@ pub(crate) fn is_a_pass(samples: std::ops::Range<u32>) -> bool {
 
 /// Cuts the work into batches: pass after pass over the whole film, so that it fills evenly.
 #[derive(Debug)]
-pub struct Schedule {
+pub(super) struct Schedule {
     width: u32,
     height: u32,
     spp: u32,
@@ -65,9 +51,9 @@ pub struct Schedule {
 }
 
 impl Schedule {
-    /// What is left to do of a film until every pixel has all samples before number `end`. In an unfinished pass, which is told by
+    /// What is left to do of a film until every pixel has all samples before number `end`. In an unfinished pass, which shows in
     /// some pixels having fewer samples than others, the first of these is next.
-    pub fn of(film: &Film, end: u32) -> Self {
+    pub(super) fn of(film: &Film, end: u32) -> Self {
         let (width, height) = (film.width, film.height);
         let [start, pass_end] = [film.least_samples(), film.most_samples()].map(|n| film.first_sample + n);
         let most = film.most_samples();
@@ -81,7 +67,7 @@ impl Schedule {
     }
 
     /// Samples that all pixels have if the last batch ended a pass.
-    pub fn pass_done(&self) -> Option<u32> {
+    pub(super) fn pass_done(&self) -> Option<u32> {
         (self.y == self.height).then_some(self.pass.end)
     }
 
@@ -90,16 +76,19 @@ impl Schedule {
         self.aim = aim;
     }
 
+    /// Whether no batch is left.
+    pub(super) fn is_done(&self) -> bool {
+        let empty = self.width == 0 || self.height == 0;
+        empty || self.y == self.height && self.pass.end >= self.spp
+    }
+
     /// The next batch, of at most `budget` samples and `max_sums` sums, but at least a group of every part of one pixel.
-    pub fn next(&mut self, budget: u64, max_sums: usize) -> Option<Batch> {
-        if self.width == 0 {
+    pub(super) fn next(&mut self, budget: u64, max_sums: usize) -> Option<Batch> {
+        if self.is_done() {
             return None;
         }
         if self.y == self.height {
             let start = self.pass.end;
-            if start >= self.spp || self.height == 0 {
-                return None;
-            }
             (self.x, self.y) = (0, 0);
             self.pass = start..self.pass_end(start, budget, max_sums as u64);
         }

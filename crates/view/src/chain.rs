@@ -1,6 +1,7 @@
 //! A swapchain with the memory that its images are copied from.
 
-use super::present::Presenter;
+use super::device::Device;
+use super::surface::Surface;
 use ash::vk;
 
 /// The images of a window of one size.
@@ -19,8 +20,8 @@ pub struct Chain {
 impl Chain {
     /// A swapchain with `extent`, which the surface allows and is not empty.
     pub(super) fn new(
-        presenter: &Presenter,
-        surface: vk::SurfaceKHR,
+        device: &Device,
+        surface: &Surface,
         can: &vk::SurfaceCapabilitiesKHR,
         extent: vk::Extent2D,
     ) -> ash::prelude::VkResult<Self> {
@@ -33,10 +34,10 @@ impl Chain {
             vk::CompositeAlphaFlagsKHR::from_raw(1 << can.supported_composite_alpha.as_raw().trailing_zeros())
         };
         let info = vk::SwapchainCreateInfoKHR::default()
-            .surface(surface)
+            .surface(surface.raw)
             .min_image_count((can.min_image_count + 1).min(most))
-            .image_format(presenter.format.format)
-            .image_color_space(presenter.format.color_space)
+            .image_format(device.format.format)
+            .image_color_space(device.format.color_space)
             .image_extent(extent)
             .image_array_layers(1)
             .image_usage(vk::ImageUsageFlags::TRANSFER_DST)
@@ -55,34 +56,34 @@ impl Chain {
             memory: vk::DeviceMemory::null(),
             mapped: std::ptr::null_mut(),
         };
-        match chain.fill(presenter, &info) {
+        match chain.fill(device, &info) {
             Ok(()) => Ok(chain),
             Err(e) => {
-                chain.destroy(presenter);
+                // SAFETY: nothing of it was used yet.
+                unsafe { chain.destroy(device) };
                 Err(e)
             }
         }
     }
 
     /// Makes the handles.
-    fn fill(&mut self, presenter: &Presenter, info: &vk::SwapchainCreateInfoKHR<'_>) -> ash::prelude::VkResult<()> {
-        let device = &presenter.device;
+    fn fill(&mut self, device: &Device, info: &vk::SwapchainCreateInfoKHR<'_>) -> ash::prelude::VkResult<()> {
         let buffer = vk::BufferCreateInfo::default().size(self.bytes()).usage(vk::BufferUsageFlags::TRANSFER_SRC);
         // SAFETY: the device is alive and `info` within what its surface allows; the structures live until their call returns. The memory fits
         // the buffer's requirements, is visible to the host, and stays mapped until it is freed.
         unsafe {
-            self.raw = presenter.swapchains.create_swapchain(info, None)?;
-            self.images = presenter.swapchains.get_swapchain_images(self.raw)?;
+            self.raw = device.swapchains.create_swapchain(info, None)?;
+            self.images = device.swapchains.get_swapchain_images(self.raw)?;
             for _ in &self.images {
-                self.done.push(device.create_semaphore(&Default::default(), None)?);
+                self.done.push(device.raw.create_semaphore(&Default::default(), None)?);
             }
-            self.buffer = device.create_buffer(&buffer, None)?;
-            let needs = device.get_buffer_memory_requirements(self.buffer);
-            let kind = presenter.host_memory(needs.memory_type_bits).ok_or(vk::Result::ERROR_OUT_OF_HOST_MEMORY)?;
+            self.buffer = device.raw.create_buffer(&buffer, None)?;
+            let needs = device.raw.get_buffer_memory_requirements(self.buffer);
+            let kind = device.host_memory(needs.memory_type_bits).ok_or(vk::Result::ERROR_OUT_OF_HOST_MEMORY)?;
             let memory = vk::MemoryAllocateInfo::default().allocation_size(needs.size).memory_type_index(kind);
-            self.memory = device.allocate_memory(&memory, None)?;
-            device.bind_buffer_memory(self.buffer, self.memory, 0)?;
-            self.mapped = device.map_memory(self.memory, 0, vk::WHOLE_SIZE, vk::MemoryMapFlags::empty())?.cast();
+            self.memory = device.raw.allocate_memory(&memory, None)?;
+            device.raw.bind_buffer_memory(self.buffer, self.memory, 0)?;
+            self.mapped = device.raw.map_memory(self.memory, 0, vk::WHOLE_SIZE, vk::MemoryMapFlags::empty())?.cast();
         }
         Ok(())
     }
@@ -107,8 +108,8 @@ impl Chain {
     /// Records the copy of the staging memory to an image.
     ///
     /// # Safety
-    /// `commands` is being recorded, and its submission waits at the stage of transfers until the image was acquired.
-    pub(super) unsafe fn record(&self, device: &ash::Device, commands: vk::CommandBuffer, image: usize) {
+    /// `commands` of the device that this was made with is being recorded, and its submission waits at the stage of transfers until the image was acquired.
+    pub(super) unsafe fn record(&self, device: &Device, commands: vk::CommandBuffer, image: usize) {
         let colour = vk::ImageAspectFlags::COLOR;
         let range = vk::ImageSubresourceRange::default().aspect_mask(colour).level_count(1).layer_count(1);
         let barrier = vk::ImageMemoryBarrier::default()
@@ -127,21 +128,23 @@ impl Chain {
         // SAFETY: the caller's promise; the handles are alive, the copy lies inside the buffer and the image. The first barrier begins at
         // the stage that waits for the image; the host's writes were done before the submission.
         unsafe {
-            device.cmd_pipeline_barrier(commands, transfer, transfer, none, &[], &[], &before);
-            device.cmd_copy_buffer_to_image(commands, self.buffer, self.images[image], to_write, &whole);
-            device.cmd_pipeline_barrier(commands, transfer, end, none, &[], &[], &after);
+            device.raw.cmd_pipeline_barrier(commands, transfer, transfer, none, &[], &[], &before);
+            device.raw.cmd_copy_buffer_to_image(commands, self.buffer, self.images[image], to_write, &whole);
+            device.raw.cmd_pipeline_barrier(commands, transfer, end, none, &[], &[], &after);
         }
     }
 
-    /// Frees everything. The device must have come to rest.
-    pub(super) fn destroy(self, presenter: &Presenter) {
-        let device = &presenter.device;
+    /// Frees everything.
+    ///
+    /// # Safety
+    /// It was made with this device, which has come to rest.
+    pub(super) unsafe fn destroy(self, device: &Device) {
         // SAFETY: the handles are null or of this device, which uses none of them any more; freeing unmaps.
         unsafe {
-            device.destroy_buffer(self.buffer, None);
-            device.free_memory(self.memory, None);
-            self.done.iter().for_each(|semaphore| device.destroy_semaphore(*semaphore, None));
-            presenter.swapchains.destroy_swapchain(self.raw, None);
+            device.raw.destroy_buffer(self.buffer, None);
+            device.raw.free_memory(self.memory, None);
+            self.done.iter().for_each(|semaphore| device.raw.destroy_semaphore(*semaphore, None));
+            device.swapchains.destroy_swapchain(self.raw, None);
         }
     }
 }

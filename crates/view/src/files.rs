@@ -1,9 +1,48 @@
-//! Names of the files that the window writes: numbered, so that none replaces another.
+//! The files that the window writes: numbered, so that none replaces another.
 
+use super::news::News;
+use super::picture::develop;
+use super::sensor_table::to_toml;
+use super::shown::Shown;
+use super::wanted::{Saved, Wanted};
+use luminaire::film::Film;
+use luminaire::scene::Sensor;
+use luminaire::{Result, picture};
 use std::path::{Path, PathBuf};
 
+/// Writes a camera into a file whose name begins with `stem`; its text, and what came of it.
+pub fn save_camera(stem: &str, sensor: &Sensor) -> [News; 2] {
+    let text = to_toml(sensor);
+    let path = free_name(Path::new(""), stem, "camera", "toml");
+    let written = written(luminaire::files::save_text(&path, &text), &path);
+    [News::Done(text), written]
+}
+
+/// Writes a picture of a film into a file whose name begins with `stem`; what came of it.
+pub fn save_picture(stem: &str, saved: Saved, film: &Film, wanted: &Wanted) -> News {
+    let ending = match saved {
+        Saved::Png => "png",
+        Saved::Exr => "exr",
+    };
+    let path = free_name(Path::new(""), stem, "view", ending);
+    let result = if saved == Saved::Exr || wanted.shown == Shown::Picture {
+        film.save(&path, wanted.exposure)
+    } else {
+        picture::save_png(&path, &develop(film, None, wanted.shown, wanted.exposure).image)
+    };
+    written(result, &path)
+}
+
+/// What to say about a file.
+fn written(result: Result<()>, path: &Path) -> News {
+    match result {
+        Ok(()) => News::Done(format!("{}\n", path.display())),
+        Err(error) => News::Said(format!("error: {error}")),
+    }
+}
+
 /// The first of `STEM-KIND-1.ENDING`, `STEM-KIND-2.ENDING`, ... in `folder` that does not exist yet.
-pub fn free_name(folder: &Path, stem: &str, kind: &str, ending: &str) -> PathBuf {
+fn free_name(folder: &Path, stem: &str, kind: &str, ending: &str) -> PathBuf {
     let names = (1u64..).map(|number| folder.join(format!("{stem}-{kind}-{number}.{ending}")));
     // A link to nowhere is somebody's, too.
     let mut free = names.filter(|path| path.symlink_metadata().is_err());

@@ -17,7 +17,7 @@ pub enum FirstHit {
     Depth,
 }
 
-/// A tracer whose "radiance" is a property of the first surface, as [`Tracer::aovs`] of another one tells it: so it fills a film as any does.
+/// A tracer whose "radiance" is a property of the first surface, which comes from the [`Tracer::aovs`] of another one: so it fills a film as any does.
 pub struct FirstHits<'a> {
     /// The other one.
     pub tracer: &'a mut dyn SceneTracer,

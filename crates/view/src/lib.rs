@@ -6,33 +6,47 @@
 //!        └─ presenter ◄── 8-bit picture, figures ─────┘
 //! ```
 //!
-//! The worker traces with any backend into a [`Film`](luminaire::film::Film), by the schedule of [`luminaire::render`]: at equal samples, size, camera and seed the
-//! window shows what a PNG of `luminaire render` holds. The window's own Vulkan device only copies; it need not be the one that traces.
+//! The worker traces with any backend into a [`Film`](luminaire::film::Film), by the steps of a [`Run`](luminaire::render::Run): at equal samples, size, camera and
+//! seed the window shows what a PNG of `luminaire render` holds. The window's own Vulkan device only copies; it need not be the one that traces.
+//!
+//! | where | what |
+//! |---|---|
+//! | `window`, `events`, `app` | the window's life; what the window system reports; what that changes |
+//! | `keys`, `input`, `camera`, `ball` | what keys do, what is held down, and where it takes the camera |
+//! | `overlay`, `message` | words on the picture |
+//! | `present`, `chain`, `device`, `surface` | pictures into the window |
+//! | `link`, `wanted`, `news`, `sight`, `shown` | what goes between window and worker |
+//! | `worker`, `lane`, `estimators`, `first_hit` | tracing |
+//! | `picture`, `figures`, `files`, `sensor_table` | what comes of it |
 
+mod app;
+mod ball;
 mod camera;
 mod chain;
+mod device;
+mod estimators;
+mod events;
+mod figures;
 mod files;
 mod first_hit;
+mod input;
+mod keys;
 mod lane;
+mod link;
+mod message;
+mod news;
+mod options;
 mod overlay;
 mod picture;
 mod present;
+mod sensor_table;
+mod shown;
+mod sight;
+mod surface;
+mod wanted;
 mod window;
 mod worker;
 
+pub use options::Options;
 pub use overlay::HELP;
 pub use window::run;
-
-use luminaire::backend::Request;
-use luminaire::scene::Scene;
-
-/// What is viewed, and how.
-#[derive(Debug, Clone)]
-pub struct Options {
-    /// The scene; its film has the size of the window.
-    pub scene: Scene,
-    /// What traces it.
-    pub request: Request,
-    /// Samples a pixel after which the picture is left as it is; `u32::MAX`: none.
-    pub spp: u32,
-}

@@ -7,7 +7,7 @@ use embedded_graphics::prelude::*;
 use embedded_graphics::text::{Baseline, Text};
 use std::convert::Infallible;
 
-/// Keys and mouse, as `luminaire view --help` and the window tell them.
+/// Keys and mouse, for `luminaire view --help` and the window.
 pub const HELP: &str = "\
 left drag          orbit around the target
 middle drag        pan (also Shift + left drag)

@@ -1,34 +1,11 @@
 //! From a film to what a window shows.
 
 use super::first_hit::FirstHit;
+use super::shown::Shown;
 use image::RgbImage;
 use luminaire::film::Film;
 use luminaire::picture::to_srgb8;
 use luminaire_measure::heat_map::{RELATIVE_ERRORS, heat_map};
-
-/// What of a film is shown.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Shown {
-    /// The picture, as a PNG of it looks.
-    Picture,
-    /// The estimated relative error of every pixel, with its scale.
-    Error,
-    /// A property of the first surface.
-    First(FirstHit),
-}
-
-impl Shown {
-    /// What it is called.
-    pub fn name(self) -> &'static str {
-        match self {
-            Shown::Picture => "picture",
-            Shown::Error => "error map",
-            Shown::First(FirstHit::Albedo) => "albedo",
-            Shown::First(FirstHit::Normal) => "normals",
-            Shown::First(FirstHit::Depth) => "depth",
-        }
-    }
-}
 
 /// A film as it is shown.
 #[derive(Debug, Clone)]

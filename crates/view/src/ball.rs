@@ -1,0 +1,25 @@
+//! Where the scene is, and how large.
+
+use glam::DVec3;
+use luminaire::scene::Scene;
+
+/// Two points are kept apart by this part of their largest coordinate, so that they stay distinct in `f32`.
+pub const NEAREST: f64 = 1e-5;
+
+/// A ball around a scene.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ball {
+    /// Its middle, in world space.
+    pub center: DVec3,
+    /// In the scene's unit; never 0.
+    pub radius: f64,
+}
+
+impl Ball {
+    /// The ball around a scene's box.
+    pub fn around(scene: &Scene) -> Self {
+        let (low, high) = scene.world_bounds();
+        let reach = low.abs().max(high.abs()).max_element();
+        Ball { center: 0.5 * (low + high), radius: (0.5 * low.distance(high)).max(NEAREST * reach) }
+    }
+}

@@ -1,0 +1,33 @@
+//! The line of figures in the window's title.
+
+use super::shown::Shown;
+use luminaire::render::Progress;
+
+/// How far a film of `size` is, in a window of another size perhaps, and by which tracer.
+pub fn figures(progress: &Progress, shown: Shown, size: (u32, u32), window: (u32, u32), tracer: &str) -> String {
+    let coarse = if size == window { String::new() } else { format!(" of {} x {}", size.0, size.1) };
+    let error = match (progress.error, shown) {
+        (Some(error), Shown::Picture | Shown::Error) => format!("error {:.2} %, ", 100.0 * error.relative()),
+        _ => String::new(),
+    };
+    let (samples, mrays) = (progress.spp(), progress.mrays_per_second());
+    format!("{samples:.1} samples a pixel{coarse}, {mrays:.2} Mrays/s, {error}{tracer}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::first_hit::FirstHit;
+    use super::*;
+    use luminaire::film::ErrorEstimate;
+
+    #[test]
+    fn the_line_says_what_is_seen() {
+        let error = Some(ErrorEstimate { rmse: 0.5, rel_mse: 0.0004, fireflies: 0, rel_mse_with_fireflies: 0.01 });
+        let progress =
+            Progress { samples: 250, pixels: 100, rays: 3_000_000, seconds: 2.0, error, ..Progress::default() };
+        let line = |shown, size| figures(&progress, shown, size, (20, 10), "cpu");
+        assert_eq!(line(Shown::Picture, (20, 10)), "2.5 samples a pixel, 1.50 Mrays/s, error 2.00 %, cpu");
+        let depth = Shown::First(FirstHit::Depth);
+        assert_eq!(line(depth, (5, 3)), "2.5 samples a pixel of 5 x 3, 1.50 Mrays/s, cpu");
+    }
+}

@@ -1,0 +1,22 @@
+//! What the window says for a moment.
+
+use std::time::{Duration, Instant};
+
+/// How long a message stays in the window.
+const STAY: Duration = Duration::from_secs(3);
+
+/// A line over the picture.
+#[derive(Debug)]
+pub struct Message {
+    /// The line.
+    pub text: String,
+    /// When it goes.
+    pub until: Instant,
+}
+
+impl Message {
+    /// The first line of a text, from now on.
+    pub fn new(text: &str) -> Self {
+        Message { text: text.lines().next().unwrap_or_default().to_owned(), until: Instant::now() + STAY }
+    }
+}

@@ -1,0 +1,102 @@
+//! A render at work, a batch at a time.
+
+use super::budget::Budget;
+use super::rendered::{Rendered, samples_of};
+use super::schedule::Schedule;
+use super::tracer::Tracer;
+use crate::Result;
+use std::time::Instant;
+
+/// Seconds between two estimates of the error that nothing depends on, ...
+const ESTIMATE_SECONDS: f64 = 1.0;
+/// ... and how many times as long as an estimate takes, so that it costs next to nothing.
+const ESTIMATE_SHARE: f64 = 20.0;
+
+/// One run of a render: what was rendered, and which batch comes next.
+#[derive(Debug)]
+pub struct Run {
+    rendered: Rendered,
+    schedule: Schedule,
+    /// The seconds of the progress at which the error is estimated again.
+    next_estimate: f64,
+}
+
+impl Run {
+    /// Goes on from `rendered` until every pixel has all samples before number `end`. Which batches are left follows from what the film holds.
+    pub fn new(rendered: Rendered, end: u32) -> Self {
+        let schedule = Schedule::of(&rendered.film, end);
+        let next_estimate = rendered.progress.seconds + ESTIMATE_SECONDS;
+        Run { rendered, schedule, next_estimate }
+    }
+
+    /// Whether every pixel has the samples it was to get.
+    pub fn is_done(&self) -> bool {
+        self.schedule.is_done()
+    }
+
+    /// Traces one batch of at most `budget`, adds it and the time that it took, and adapts the budget. Does nothing if all is done.
+    ///
+    /// # Errors
+    /// If the tracer fails; then the batch is missing, and the run cannot go on.
+    pub fn step<T: Tracer + ?Sized>(&mut self, tracer: &mut T, budget: &mut Budget) -> Result<()> {
+        let Some(batch) = self.schedule.next(budget.samples(), tracer.max_sums()) else { return Ok(()) };
+        let start = Instant::now();
+        let traced = tracer.trace(&batch)?;
+        let seconds = start.elapsed().as_secs_f64();
+        budget.adapt(samples_of(&batch), seconds, traced.device_seconds, tracer.batch_seconds());
+        self.rendered.add(&batch, &traced);
+        self.rendered.progress.seconds += seconds;
+        Ok(())
+    }
+
+    /// Whether it is time to estimate the error again where nothing depends on it: only so often that it costs next to nothing.
+    pub fn estimate_is_due(&self) -> bool {
+        self.rendered.progress.seconds >= self.next_estimate
+    }
+
+    /// Estimates the error for the progress.
+    pub fn estimate(&mut self) {
+        let start = Instant::now();
+        self.rendered.progress.error = self.rendered.film.error();
+        let pause = ESTIMATE_SECONDS.max(ESTIMATE_SHARE * start.elapsed().as_secs_f64());
+        self.next_estimate = self.rendered.progress.seconds + pause;
+    }
+
+    /// What was rendered so far. Its seconds are those that tracing took.
+    pub fn rendered(&self) -> &Rendered {
+        &self.rendered
+    }
+
+    /// Ends the run.
+    pub fn into_rendered(self) -> Rendered {
+        self.rendered
+    }
+
+    /// For a loop that counts the time by another clock.
+    pub(super) fn set_seconds(&mut self, seconds: f64) {
+        self.rendered.progress.seconds = seconds;
+    }
+
+    /// Whether all pixels have equally many samples.
+    pub(super) fn is_between_passes(&self) -> bool {
+        self.schedule.pass_done().is_some()
+    }
+
+    /// Whether all pixels have as many samples as a limit of the noise wants to be looked at with.
+    pub(super) fn is_at_noise_aim(&self) -> bool {
+        self.schedule.pass_done() == Some(self.rendered.noise_aim)
+    }
+
+    /// Lets the next passes end where a limit of the noise is looked at next.
+    pub(super) fn aim_at_noise(&mut self) {
+        self.schedule.aim(self.rendered.noise_aim);
+    }
+
+    /// Estimates the error and says whether it is below `limit`; if not, passes then end where to look again. Only where
+    /// [`Run::is_at_noise_aim`].
+    pub(super) fn is_quiet_enough(&mut self, limit: f64) -> bool {
+        let quiet = self.rendered.quiet_enough(limit);
+        self.aim_at_noise();
+        quiet
+    }
+}
