@@ -14,17 +14,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "intersect.glsl"
 #include "surfel.glsl"
 #include "sensor.glsl"
-
-// The same as the path tracer's; there are no groups.
-layout(push_constant, std430) uniform Batch {
-    uint tile_x;
-    uint tile_y;
-    uint tile_width;
-    uint tile_height;
-    uint first_sample;
-    uint end_sample;
-    uint group;
-} batch;
+#include "batch.glsl"
 
 struct AovSum {
     float albedo[3];
@@ -51,10 +41,10 @@ void main() {
         if (!closest_hit(origin, direction, INFINITY, salt, hit)) continue;
         Surfel s = surfel(hit, -direction);
         Material material = material_at(s);
-        albedo += material.lambert.rgb;
-        if (GLOSSY) albedo += material.glossy.rgb;
+        albedo += material.lambert;
+        if (GLOSSY) albedo += material.glossy;
         // Of a dielectric either the one or the other.
-        if (IMPULSES) albedo += max(material.reflection.rgb, DIELECTRICS ? material.transmission.rgb : vec3(0.0));
+        if (IMPULSES) albedo += max(material.reflection, DIELECTRICS ? material.transmission : vec3(0.0));
         normal += s.shading_normal;
         depth += dot(s.position - frame.position.xyz, frame.forward.xyz);
         hits++;

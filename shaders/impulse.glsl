@@ -38,10 +38,10 @@ float average(vec3 v) { return (v.x + v.y + v.z) * (1.0 / 3.0); }
 Impulses impulses(Surfel s, Material material, vec3 wo) {
     Impulses i = Impulses(vec3(0.0), vec3(0.0), s.shading_normal, 0.0, 0.0);
     if (!IMPULSES) return i;
-    vec3 rest = material.lambert.rgb;
-    if (GLOSSY) rest += material.glossy.rgb;
-    i.reflected = material.reflection.rgb;
-    if (DIELECTRICS && material.reflection.w > 0.0) i.eta = s.front ? material.reflection.w : 1.0 / material.reflection.w;
+    vec3 rest = material.lambert;
+    if (GLOSSY) rest += material.glossy;
+    i.reflected = material.reflection;
+    if (DIELECTRICS && material.eta != MIRROR) i.eta = s.front ? material.eta : 1.0 / material.eta;
     // A direction on the wrong side of the triangle: the triangle's own normal instead.
     if (VERTEX_NORMALS) {
         bool wrong = dot(reflect_direction(wo, i.normal), s.geometric_normal) <= 0.0;
@@ -51,13 +51,13 @@ Impulses impulses(Surfel s, Material material, vec3 wo) {
     if (DIELECTRICS && i.eta > 0.0) {
         float f = fresnel(i.eta, min(dot(wo, i.normal), 1.0));
         i.reflected *= f;
-        i.transmitted = material.transmission.rgb * (1.0 - f);
+        i.transmitted = material.transmission * (1.0 - f);
     }
     float impulse = average(i.reflected + i.transmitted);
     float other = average(rest);
     if (impulse > 0.0) {
         if (other == 0.0) i.probability = 1.0;
-        else i.probability = material.lambert.w >= 0.0 ? material.lambert.w : impulse / (impulse + other);
+        else i.probability = material.impulse_probability != BY_ALBEDOS ? material.impulse_probability : impulse / (impulse + other);
     }
     return i;
 }

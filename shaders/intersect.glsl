@@ -14,7 +14,7 @@ struct Hit {
 // bool closest_hit(vec3 origin, vec3 direction, float t_max, uint salt, out Hit hit);
 // bool occluded(vec3 origin, vec3 direction, float t_max, uint salt);
 
-#define INFINITY uintBitsToFloat(0x7f800000u)
+#define INFINITY uintBitsToFloat(INFINITY_BITS)
 
 float largest(vec3 v) { return max(v.x, max(v.y, v.z)); }
 

@@ -2,13 +2,15 @@
 //
 // The nodes are those of Ylitie, Karras and Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide
 // BVHs" (HPG 2017), as the obvhs crate lays them out: 80 bytes for up to eight children. Triangles are tested by Woop,
-// Benthin and Wald, "Watertight Ray/Triangle Intersection" (JCGT 2(1), 2013). Leaf boxes come padded (src/bvh/mod.rs), which
+// Benthin and Wald, "Watertight Ray/Triangle Intersection" (JCGT 2(1), 2013). Leaf boxes come padded (src/gpu/bvh), which
 // covers the rounding of the box test.
 
-// Five texels a node; the top level starts at node 0, or, without INSTANCES, the only mesh does.
+// The top level starts at node 0, or, without INSTANCES, the only mesh does.
 layout(set = 0, binding = 1) uniform usamplerBuffer nodes;
 
-// At most one entry a level and one more for the instances of a top-level leaf; src/bvh/mod.rs refuses deeper trees.
+// Texels of a node.
+const int NODE_TEXELS = 5;
+// At most one entry a level and one more for the instances of a top-level leaf; src/gpu/accel refuses deeper trees.
 const int STACK_SIZE = 32;
 
 // A ray in the space that is being traversed, with what the box and triangle tests need of it.
@@ -46,7 +48,7 @@ float byte_of(uint word, uint index) { return float(bitfieldExtract(word, int(8u
 // Tests the eight children of a node; returns one bit for each triangle (0 to 23) and each inner child (24 to 31, the
 // nearest octant highest) that the ray may hit before `t_max`.
 uint intersect_node(TraversalRay ray, float t_max, uint node, out uvec2 bases, out uint inner_mask) {
-    int base = int(node) * 5;
+    int base = int(node) * NODE_TEXELS;
     uvec4 n0 = texelFetch(nodes, base);
     uvec4 n1 = texelFetch(nodes, base + 1);
     uvec4 nx = texelFetch(nodes, base + 2);
@@ -93,15 +95,11 @@ float largest_size(vec3 v) { return intBitsToFloat(most(floatBitsToInt(abs(v))))
 
 // Woop's test: an edge shared by two triangles gives the same numbers for both, so no ray slips through between them.
 bool intersect_triangle(TraversalRay ray, float t_max, uint triangle, out float t, out vec3 weights) {
-    int base = int(triangle) * 3;
-    vec3 corner_a = uintBitsToFloat(texelFetch(triangles, base).xyz);
-    vec3 corner_b = uintBitsToFloat(texelFetch(triangles, base + 1).xyz);
-    uvec4 last = texelFetch(triangles, base + 2);
-    vec3 corner_c = uintBitsToFloat(last.xyz);
-    vec3 from_a = corner_a - ray.origin;
+    Triangle corner = load_triangle(triangle);
+    vec3 from_a = corner.a - ray.origin;
     vec3 a = permute(from_a, ray.axis);
-    vec3 b = permute(corner_b - ray.origin, ray.axis);
-    vec3 c = permute(corner_c - ray.origin, ray.axis);
+    vec3 b = permute(corner.b - ray.origin, ray.axis);
+    vec3 c = permute(corner.c - ray.origin, ray.axis);
     precise vec2 a2 = a.xy - ray.shear.xy * a.z;
     precise vec2 b2 = b.xy - ray.shear.xy * b.z;
     precise vec2 c2 = c.xy - ray.shear.xy * c.z;
@@ -113,20 +111,20 @@ bool intersect_triangle(TraversalRay ray, float t_max, uint triangle, out float 
     float determinant = u + v + w;
     // Neither zero nor, of coordinates that overflow, infinite or no number.
     uint size = floatBitsToUint(abs(determinant));
-    if (size == 0u || size >= 0x7f800000u) return false;
+    if (size == 0u || size >= INFINITY_BITS) return false;
     weights = vec3(v, w, determinant);
     // Distances of the corners.
     vec3 corners = vec3(a.z, b.z, c.z) * ray.shear.z;
     // Of a narrow triangle u, v and w are small differences of large products. Its plane is known better: by its short edges, as they are
     // before the origin is subtracted. A ray within that plane has no one distance to it, corners in one line have no plane; and no distance
     // lies outside the corners'.
-    vec3 ab = corner_b - corner_a;
-    vec3 bc = corner_c - corner_b;
-    vec3 ca = corner_a - corner_c;
-    uint longest = last.w & 3u;
+    vec3 ab = corner.b - corner.a;
+    vec3 bc = corner.c - corner.b;
+    vec3 ca = corner.a - corner.c;
+    uint longest = corner.shape & LONGEST_EDGE;
     vec3 n = cross(longest == 0u ? bc : (longest == 1u ? ca : ab), longest == 0u ? ca : (longest == 1u ? ab : bc));
     float slope = dot(n, ray.direction);
-    bool plane = last.w >= 4u && abs(slope) * abs(ray.shear.z) > 1e-6 * largest_size(n);
+    bool plane = (corner.shape & HAS_PLANE) != 0u && abs(slope) * abs(ray.shear.z) > 1e-6 * largest_size(n);
     t = (plane ? dot(n, from_a) : dot(vec3(u, v, w), corners)) / (plane ? slope : determinant);
     // As integers, as in intersect_node.
     ivec3 distances = floatBitsToInt(corners);

@@ -1,13 +1,17 @@
 // Direct light (slides "Lighting Functions", "Shadows & Attenuation", "Area Luminaires"), with the densities that they leave out, and
 // the weights of light that is found twice.
 
-// One luminaire, in proportion to its power, by an alias table (twin: src/sampling/alias.rs).
+// A triangle is near where its area over the squared distance to its centroid is above this (twins: src/reference/luminaire.rs).
+const float NEAR = 0.05;
+// Triangles that look smaller, in steradian, are sampled by area: solid angles cancel.
+const float LEAST_SOLID_ANGLE = 1e-3;
+
+// One luminaire, in proportion to its power, by an alias table.
 uint choose_luminaire(uint random) {
     uint slot, fraction;
     umulExtended(random, frame.luminaire_count, slot, fraction);
-    // Kind, threshold, alias, triangle.
-    uvec4 choice = texelFetch(luminaires, int(slot) * LUMINAIRE_TEXELS + 5);
-    return fraction < choice.y ? slot : choice.z;
+    AliasSlot entry = luminaire_slot(slot);
+    return fraction < entry.threshold ? slot : entry.alias;
 }
 
 // The power heuristic's weight of a density next to another one (Veach and Guibas 1995).
@@ -21,20 +25,20 @@ bool is_near(vec3 p, vec3 a, vec3 b, vec3 c, float area, out vec3 v[3], out floa
     omega = 0.0;
     if (!SOLID_ANGLE) return false;
     vec3 d = (a + b + c) * (1.0 / 3.0) - p;
-    if (area <= 0.05 * dot(d, d)) return false;
+    if (area <= NEAR * dot(d, d)) return false;
     v[0] = normalize(a - p);
     v[1] = normalize(b - p);
     v[2] = normalize(c - p);
     omega = solid_angle(v);
-    return omega > 1e-3;
+    return omega > LEAST_SOLID_ANGLE;
 }
 
 // The density per steradian with which direct_light at `p` gives the direction in which a ray from there met an emissive triangle.
 float triangle_density(vec3 p, vec3 wi, Hit hit, float area_density) {
-    int base = int(hit.triangle) * 3;
-    vec3 a = uintBitsToFloat(texelFetch(triangles, base).xyz);
-    vec3 b = uintBitsToFloat(texelFetch(triangles, base + 1).xyz);
-    vec3 c = uintBitsToFloat(texelFetch(triangles, base + 2).xyz);
+    Triangle triangle = load_triangle(hit.triangle);
+    vec3 a = triangle.a;
+    vec3 b = triangle.b;
+    vec3 c = triangle.c;
     if (INSTANCES) {
         vec4 to_world[3];
         object_to_world(hit.object, to_world);
@@ -72,37 +76,37 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, vec3 throughput, uvec4 r
     bool area = AREA_LUMINAIRES && (!several || light.kind == AREA);
     bool surroundings = ENVIRONMENT && (!several || light.kind == SURROUNDINGS);
     // Unshadowed radiance over the density of finding it, and the shadow ray that must reach (0, t_max) unhindered.
-    vec3 target = light.a.xyz;
+    vec3 target = light.a;
     vec3 wi = target;
-    vec3 incident = light.radiance.rgb / light.radiance.w;
+    vec3 incident = light.radiance / light.probability;
     float density = 0.0;      // per steradian; 0 where no other ray can find the light
-    float target_error = light.c.w;
+    float target_error = light.position_error;
     float t_max = INFINITY;
     if (surroundings) {
         wi = sample_environment(random.w, uniform2(random.xy), density);
-        incident = environment_radiance(wi) / (density * light.radiance.w);
-        density *= light.radiance.w;
+        incident = environment_radiance(wi) / (density * light.probability);
+        density *= light.probability;
     } else if (!infinite) {
         t_max = 1.0;
-        float double_area = 2.0 * light.b.w;
+        float double_area = 2.0 * light.area;
         vec3 v[3];
         float omega;
-        float height = dot(light.normal.xyz, light.a.xyz - s.position);
+        float height = dot(light.normal, light.a - s.position);
         // In its own plane a point sees nothing of the triangle, but rounding would make that half of all directions.
-        if (area && abs(height) <= dot(abs(light.normal.xyz), s.position_error)) return vec3(0.0);
-        if (area && is_near(s.position, light.a.xyz, light.b.xyz, light.c.xyz, light.b.w, v, omega)) {
+        if (area && abs(height) <= dot(abs(light.normal), s.position_error)) return vec3(0.0);
+        if (area && is_near(s.position, light.a, light.b, light.c, light.area, v, omega)) {
             wi = spherical_triangle(v, omega, uniform2(random.xy));
-            float t = height / dot(light.normal.xyz, wi);
+            float t = height / dot(light.normal, wi);
             target = s.position + t * wi;
-            target_error += gamma(8.0) * (largest(abs(s.position)) + largest(abs(light.a.xyz)));
+            target_error += gamma(8.0) * (largest(abs(s.position)) + largest(abs(light.a)));
             incident *= omega;
-            density = light.radiance.w / omega;
+            density = light.probability / omega;
             // The plane may be missed where the triangle is seen edge-on.
             if (!(t > 0.0 && t < 1e30)) return vec3(0.0);
         } else {
             if (area) {
                 vec3 w = uniform_triangle(uniform2(random.xy));
-                target = w.x * light.a.xyz + w.y * light.b.xyz + w.z * light.c.xyz;
+                target = w.x * light.a + w.y * light.b + w.z * light.c;
             }
             vec3 d = target - s.position;
             float distance2 = dot(d, d);
@@ -110,13 +114,13 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, vec3 throughput, uvec4 r
             wi = d * inversesqrt(distance2);
             incident /= distance2;
             if (area) {
-                float cosine = light.b.w * abs(dot(light.normal.xyz, wi));
+                float cosine = light.area * abs(dot(light.normal, wi));
                 incident *= cosine;
-                density = light.radiance.w * distance2 / cosine;
+                density = light.probability * distance2 / cosine;
             }
         }
     }
-    if (area && light.normal.w != 0.0 && dot(light.normal.xyz, wi) > 0.0) return vec3(0.0);
+    if (area && light.one_sided != 0.0 && dot(light.normal, wi) > 0.0) return vec3(0.0);
     vec4 f = bsdf_and_pdf(s, material, wo, wi);
     vec3 scattered = f.rgb * dot(s.shading_normal, wi);
     vec3 radiance = scattered * incident;
@@ -127,13 +131,13 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, vec3 throughput, uvec4 r
 
     if (area && (TEXTURES || HOLES)) {
         Material lamp = load_material(light.material);
-        uint emission_map = lamp.maps.w;
-        bool partly = HOLES && (lamp.transmission.w < 1.0 || lamp.opacity_map != NONE);
+        uint emission_map = lamp.emission_map;
+        bool partly = HOLES && (lamp.opacity < 1.0 || lamp.opacity_map != NONE);
         if (emission_map != NONE || partly) {
             // Where on the triangle the target lies, by areas.
-            vec3 ab = light.b.xyz - light.a.xyz;
-            vec3 ac = light.c.xyz - light.a.xyz;
-            vec3 ap = target - light.a.xyz;
+            vec3 ab = light.b - light.a;
+            vec3 ac = light.c - light.a;
+            vec3 ap = target - light.a;
             vec3 n = cross(ab, ac);
             vec3 unit = normalize(n / largest(abs(n)));
             vec2 barycentric = vec2(dot(cross(ap, ac), unit), dot(cross(ab, ap), unit)) / dot(n, unit);
@@ -147,7 +151,7 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, vec3 throughput, uvec4 r
     vec3 direction = wi;
     if (!infinite && !surroundings) {
         if (area) {
-            target = offset_ray_origin(target, vec3(target_error), light.normal.xyz, -wi);
+            target = offset_ray_origin(target, vec3(target_error), light.normal, -wi);
             // The end of the segment rounds by its length: stop eight units in the last place before it.
             t_max = 1.0 - 9.5367432e-7;
         }

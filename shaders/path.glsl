@@ -20,8 +20,8 @@ Path camera_path(uvec2 pixel, uint pixel_index, uint sample_index) {
 
 bool is_finite(vec3 v) {
     // By the bits: a compiler may assume that no float is infinite.
-    uvec3 exponent = floatBitsToUint(v) & 0x7f800000u;
-    return all(notEqual(exponent, uvec3(0x7f800000u)));
+    uvec3 exponent = floatBitsToUint(v) & INFINITY_BITS;
+    return all(notEqual(exponent, uvec3(INFINITY_BITS)));
 }
 
 // Traces the path's ray and whatever happens at the surface it meets: once through the loop of `radiance` in the reference.
@@ -35,7 +35,7 @@ bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uve
         if (ENVIRONMENT) {
             float density = 0.0;
             if (LIGHT_SAMPLING == LIGHT_MIS && path.pdf != IMPULSE) {
-                density = frame.environment.w * environment_density(path.direction);
+                density = frame.environment_probability * environment_density(path.direction);
             }
             float weight = emission_weight(path.pdf, density);
             if (weight > 0.0) path.radiance += path.throughput * environment_radiance(path.direction) * weight;
@@ -46,19 +46,19 @@ bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uve
     Surfel s = surfel(hit, wo);
     Material material = material_at(s);
 
-    if (AREA_LUMINAIRES && material.emission.rgb != vec3(0.0)) {
+    if (AREA_LUMINAIRES && material.emission != vec3(0.0)) {
         float density = 0.0;
         if (LIGHT_SAMPLING == LIGHT_MIS && path.pdf != IMPULSE) {
-            density = triangle_density(path.from, path.direction, hit, material.emission.w);
+            density = triangle_density(path.from, path.direction, hit, material.area_density);
         }
-        path.radiance += path.throughput * material.emission.rgb * emission_weight(path.pdf, density);
+        path.radiance += path.throughput * material.emission * emission_weight(path.pdf, density);
     }
-    if (SIMPLE) path.radiance += frame.ambient.rgb * material.ambient.rgb;
+    if (SIMPLE) path.radiance += frame.ambient.rgb * material.ambient;
     // One bounce more than allowed: only the emission was still direct light.
     if (!SIMPLE && path.bounce > frame.max_bounces) return false;
 
     Impulses i = impulses(s, material, wo);
-    bool glossy_or_lambert = material.lambert.rgb != vec3(0.0) || (GLOSSY && material.glossy.rgb != vec3(0.0));
+    bool glossy_or_lambert = material.lambert != vec3(0.0) || (GLOSSY && material.glossy != vec3(0.0));
     if (LIGHT_SAMPLING != LIGHT_NONE && (!IMPULSES || glossy_or_lambert)) {
         uvec4 random = numbers(pixel_index, sample_index, light_block(path.bounce), frame.seed);
         salt = HOLES ? ray_salt(pixel_index, sample_index, 2u * path.bounce + 1u, frame.seed) : 0u;

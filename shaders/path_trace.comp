@@ -19,17 +19,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "luminaire.glsl"
 #include "sensor.glsl"
 #include "path.glsl"
-
-// One batch: the samples [first_sample, end_sample) of a tile, in groups.
-layout(push_constant, std430) uniform Batch {
-    uint tile_x;
-    uint tile_y;
-    uint tile_width;
-    uint tile_height;
-    uint first_sample;
-    uint end_sample;
-    uint group;
-} batch;
+#include "batch.glsl"
 
 struct PixelSum {
     float radiance[3];

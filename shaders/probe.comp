@@ -51,11 +51,11 @@ layout(set = 0, binding = 8, std430) readonly buffer In { uvec4 arguments[]; };
 
 void write_hit(uint id, bool found, Hit hit) {
     if (!found) {
-        results[2u * id] = uvec4(0x7f800000u, NONE, NONE, 0u);
+        results[2u * id] = uvec4(INFINITY_BITS, NONE, NONE, 0u);
         return;
     }
-    uint original = texelFetch(triangles, int(hit.triangle) * 3 + 1).w;
-    results[2u * id] = uvec4(floatBitsToUint(hit.t), object_place(hit.object).scene_index, original, 0u);
+    uint index_in_mesh = load_triangle(hit.triangle).index_in_mesh;
+    results[2u * id] = uvec4(floatBitsToUint(hit.t), object_place(hit.object).scene_index, index_in_mesh, 0u);
     results[2u * id + 1u] = uvec4(floatBitsToUint(hit.barycentric), 0u, 0u);
 }
 
@@ -120,7 +120,7 @@ void main() {
         Luminaire light = load_luminaire(x.w);
         vec3 v[3];
         float omega;
-        if (is_near(uintBitsToFloat(x.xyz), light.a.xyz, light.b.xyz, light.c.xyz, light.b.w, v, omega)) {
+        if (is_near(uintBitsToFloat(x.xyz), light.a, light.b, light.c, light.area, v, omega)) {
             result = floatBitsToUint(vec4(spherical_triangle(v, omega, uintBitsToFloat(y.xy)), omega));
         }
         break;

@@ -9,8 +9,8 @@ const float SURE_THROUGHPUT = 0.4;
 // The probability that the glossy lobe chooses a direction that no impulse chose.
 float glossy_share(Material material) {
     if (!GLOSSY) return 0.0;
-    float glossy = average(material.glossy.rgb);
-    return glossy > 0.0 ? glossy / (glossy + average(material.lambert.rgb)) : 0.0;
+    float glossy = average(material.glossy);
+    return glossy > 0.0 ? glossy / (glossy + average(material.lambert)) : 0.0;
 }
 
 // f(wo, wi), without the cosine, in rgb; w: the density per steradian with which scatter_direction gives wi. All zero where the two
@@ -18,17 +18,17 @@ float glossy_share(Material material) {
 vec4 bsdf_and_pdf(Surfel s, Material material, vec3 wo, vec3 wi) {
     float cosine = dot(s.shading_normal, wi);
     if (dot(s.geometric_normal, wi) <= 0.0 || cosine <= 0.0) return vec4(0.0);
-    vec3 f = material.lambert.rgb * (1.0 / PI);
+    vec3 f = material.lambert * (1.0 / PI);
     float pdf = DIRECTIONS == DIRECTIONS_UNIFORM ? 0.5 / PI : cosine * (1.0 / PI);
-    if (GLOSSY && material.glossy.rgb != vec3(0.0)) {
+    if (GLOSSY && material.glossy != vec3(0.0)) {
         vec3 h = normalize(wi + wo);
         // cos^m: near the normal by the sine, because rounding a cosine of nearly 1 shows m times.
         vec3 sine = cross(s.shading_normal, h);
         float sine2 = dot(sine, sine);
         float log_cosine = sine2 < 0.5 ? 0.5 * log_one_minus(sine2) : log(max(dot(s.shading_normal, h), 1e-18));
-        float m = material.glossy.w;
+        float m = material.exponent;
         float lobe = exp(m * log_cosine);
-        f += material.glossy.rgb * (material.ambient.w * lobe);
+        f += material.glossy * (material.normalisation * lobe);
         if (DIRECTIONS == DIRECTIONS_BSDF) {
             float half_vector = (m + 1.0) * (0.5 / PI) * lobe / (4.0 * abs(dot(wo, h)));
             pdf = mix(pdf, half_vector, glossy_share(material));
@@ -41,7 +41,7 @@ vec4 bsdf_and_pdf(Surfel s, Material material, vec3 wo, vec3 wi) {
 vec3 scatter_direction(Surfel s, Material material, vec3 wo, vec2 u, float choice) {
     if (DIRECTIONS == DIRECTIONS_UNIFORM) return from_frame(s.shading_normal, uniform_hemisphere(u));
     if (GLOSSY && DIRECTIONS == DIRECTIONS_BSDF && choice < glossy_share(material)) {
-        vec3 h = from_frame(s.shading_normal, glossy_half_vector(material.glossy.w, u));
+        vec3 h = from_frame(s.shading_normal, glossy_half_vector(material.exponent, u));
         return reflect_direction(wo, h);
     }
     return from_frame(s.shading_normal, cosine_hemisphere(u));
@@ -49,9 +49,9 @@ vec3 scatter_direction(Surfel s, Material material, vec3 wo, vec2 u, float choic
 
 // The share of light that a surface does not extinguish, for the channel that loses least.
 float survival(Material material) {
-    vec3 albedo = material.lambert.rgb;
-    if (GLOSSY) albedo += material.glossy.rgb;
-    if (IMPULSES) albedo += max(material.reflection.rgb, DIELECTRICS ? material.transmission.rgb : vec3(0.0));
+    vec3 albedo = material.lambert;
+    if (GLOSSY) albedo += material.glossy;
+    if (IMPULSES) albedo += max(material.reflection, DIELECTRICS ? material.transmission : vec3(0.0));
     return min(largest(albedo), MAX_SURVIVAL);
 }
 
@@ -94,7 +94,7 @@ Scattering scatter(Surfel s, Material material, Impulses i, vec3 wo, uvec4 rando
     // Without a second lobe the cosine cancels exactly.
     bool lambert_only = !GLOSSY && DIRECTIONS != DIRECTIONS_UNIFORM;
     vec3 weight = vec3(0.0);
-    if (lambert_only) weight = f.w > 0.0 ? material.lambert.rgb / rest : vec3(0.0);
+    if (lambert_only) weight = f.w > 0.0 ? material.lambert / rest : vec3(0.0);
     else if (f.w > 0.0) weight = f.rgb * (dot(s.shading_normal, wi) / f.w);
     return Scattering(wi, weight, f.w, 1.0);
 }

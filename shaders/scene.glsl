@@ -34,47 +34,67 @@ const uint EXTINCTION_LITERAL = 1u;
 const uint EXTINCTION_SURFACE = 2u;
 const uint EXTINCTION_THROUGHPUT = 3u;
 
+// Texels of the filter's table.
+const int FILTER_TEXELS = 65;
+
 layout(set = 0, binding = 0, std140) uniform Frame {
-    vec4 position;     // eye point
-    vec4 forward;      // unit line of sight
-    vec4 right;        // to the right edge of the picture: at distance 1, or of the parallel rays
-    vec4 up;           // to the upper edge
-    vec4 lens;         // radius of the aperture, focus distance, blades, rotation in turns
-    vec4 ambient;      // ambient radiance of the simple ray tracer
-    vec4 environment;  // radiance of the environment, or a factor to its image; w: probability of choosing it
-    uint width;        // film size in pixels
+    vec4 position;                        // eye point
+    vec4 forward;                         // unit line of sight
+    vec4 right;                           // to the right edge of the picture: at distance 1, or of the parallel rays
+    vec4 up;                              // to the upper edge
+    float lens_radius;                    // of the aperture; 0: a pinhole
+    float focus_distance;
+    float lens_blades;                    // corners of the aperture; 0: it is round
+    float lens_rotation;                  // in turns
+    vec4 ambient;                         // ambient radiance of the simple ray tracer
+    vec3 environment;                     // radiance of the environment, or a factor to its image
+    float environment_probability;        // of choosing it
+    uint width;                           // film size in pixels
     uint height;
     uint seed;
     uint luminaire_count;
     uint max_bounces;
     float albedo_threshold;
-    uint environment_width;      // in texels
+    uint environment_width;               // in texels
     uint environment_height;
-    float environment_rotation;  // in turns
-    vec4 filter_table[65];       // inverse cumulative distribution of the pixel filter: 257 knots, in pixels
+    float environment_rotation;           // in turns
+    vec4 filter_table[FILTER_TEXELS];     // inverse cumulative distribution of the pixel filter: 257 knots, in pixels
 } frame;
 
-// Triangles in object space, three texels each: corners in xyz; w holds the material, the index in the scene's mesh, 0.
+// Triangles in object space.
 layout(set = 0, binding = 2) uniform usamplerBuffer triangles;
 // Vertex normals, three texels a triangle, where VERTEX_NORMALS.
 layout(set = 0, binding = 3) uniform usamplerBuffer normals;
 
-// Objects, seven texels each: three rows to world space, three rows back, and `ObjectPlace`. Texels, because lavapipe reads them
-// several times faster than storage buffers.
+// Objects: three rows to world space, three rows back, and `ObjectPlace`. Texels, because lavapipe reads them several times faster than
+// storage buffers.
 layout(set = 0, binding = 4) uniform usamplerBuffer objects;
 
+// In the order of the texels: whatever follows a vec3 is in its texel's w.
 struct Material {
-    vec4 ambient;         // rgb; w: N(m), the normalisation of the glossy lobe
-    vec4 lambert;         // rgb; w: probability of an impulse, or -1: by the albedos
-    vec4 glossy;          // rgb; w: exponent m
-    vec4 emission;        // rgb; w: probability of choosing a triangle of this material for each unit of its area
-    vec4 reflection;      // rgb of the impulse; w: eta, or 0: a mirror
-    vec4 transmission;    // rgb of the impulse; w: opacity
-    uvec4 maps;           // textures that multiply ambient, lambert, glossy and emission, or NONE
-    uint opacity_map;     // its alpha multiplies the opacity
-    uint one_sided;       // 1 if only the outward side emits
+    vec3 ambient;
+    float normalisation;          // of the glossy lobe: N(m)
+    vec3 lambert;
+    float impulse_probability;    // or BY_ALBEDOS
+    vec3 glossy;
+    float exponent;               // of the glossy lobe: m
+    vec3 emission;
+    float area_density;           // probability of choosing a triangle of this material for each unit of its area
+    vec3 reflection;              // of the impulse
+    float eta;                    // index of refraction inside over that outside, or MIRROR
+    vec3 transmission;            // of the impulse
+    float opacity;
+    uint ambient_map;             // textures that multiply the albedos and the emission, or NONE
+    uint lambert_map;
+    uint glossy_map;
+    uint emission_map;
+    uint opacity_map;             // its alpha multiplies the opacity
+    uint one_sided;               // 1 if only the outward side emits
 };
-// Eight texels each.
+// What impulse_probability is where the albedos say how probable an impulse is.
+const float BY_ALBEDOS = -1.0;
+// The index of refraction of what has none.
+const float MIRROR = 0.0;
 layout(set = 0, binding = 5) uniform usamplerBuffer materials;
 
 const uint POINT = 0u;
@@ -82,39 +102,70 @@ const uint INFINITE = 1u;
 const uint AREA = 2u;
 const uint SURROUNDINGS = 3u;
 
+// Without its slot of the alias table.
 struct Luminaire {
-    vec4 a;            // point: position; infinite: unit vector towards the light; area: first corner
-    vec4 b;            // area: second corner; w: area
-    vec4 c;            // area: third corner; w: bound on the error of a point on the triangle, in each coordinate
-    vec4 normal;       // area: unit outward normal; w: 1 if only that side emits
-    vec4 radiance;     // intensity, irradiance or radiance (without its texture); w: probability of being chosen
+    vec3 a;                  // point: position; infinite: unit vector towards the light; area: first corner
+    vec3 b;                  // area: second corner
+    float area;              // of the triangle
+    vec3 c;                  // area: third corner
+    float position_error;    // area: bound on the error of a point on the triangle, in each coordinate
+    vec3 normal;             // area: unit outward normal
+    float one_sided;         // area: 1 if only the outward side emits
+    vec3 radiance;           // intensity, irradiance or radiance (without its texture)
+    float probability;       // of being chosen
     uint kind;
-    uint triangle;     // area: index into `triangles`
-    uint material;     // area
+    uint triangle;           // area: index into `triangles`
+    uint material;           // area
 };
-// Seven texels each.
 layout(set = 0, binding = 6) uniform usamplerBuffer luminaires;
 
 // Texture coordinates, two texels a triangle: those of the first two corners, then the third's.
 layout(set = 0, binding = 9) uniform usamplerBuffer uvs;
-// One texel a texture: its first texel in `texels`, width, height, whether it is clamped.
+// One texel a texture.
 layout(set = 0, binding = 10) uniform usamplerBuffer textures;
 // Two texels of a texture in one: four half floats each.
 layout(set = 0, binding = 11) uniform usamplerBuffer texels;
-// One texel a texel of the environment: radiance without its factor, density of its directions per steradian.
+// One texel a texel of the environment.
 layout(set = 0, binding = 12) uniform usamplerBuffer environment_texels;
 // Two slots of the environment's alias table in one: threshold and alias each.
 layout(set = 0, binding = 13) uniform usamplerBuffer environment_slots;
 
+// No index.
 const uint NONE = 0xffffffffu;
+// The bits of an infinity, and of the exponent of all that is not finite.
+const uint INFINITY_BITS = 0x7f800000u;
 
 // Sizes of the structures that are read as texels.
+const int TRIANGLE_TEXELS = 3;
 const int OBJECT_TEXELS = 7;
 const int MATERIAL_TEXELS = 8;
 const int LUMINAIRE_TEXELS = 7;
 
 vec3 row_dot(vec4 m[3], vec3 v) { return vec3(dot(m[0].xyz, v), dot(m[1].xyz, v), dot(m[2].xyz, v)); }
 vec3 translation(vec4 m[3]) { return vec3(m[0].w, m[1].w, m[2].w); }
+
+// A triangle, in the order of its texels.
+struct Triangle {
+    vec3 a;                // first corner
+    uint material;         // unless the object has one of its own
+    vec3 b;                // second corner
+    uint index_in_mesh;    // in the scene's Mesh::triangles
+    vec3 c;                // third corner
+    uint shape;            // LONGEST_EDGE and HAS_PLANE
+};
+// The bits of a shape: which edge is the longest (0: from a to b, 1: to c, 2: back to a), and whether the other two say what plane the
+// triangle lies in.
+const uint LONGEST_EDGE = 3u;
+const uint HAS_PLANE = 4u;
+
+// Of what the caller does not use the compiler leaves the texels out.
+Triangle load_triangle(uint index) {
+    int base = int(index) * TRIANGLE_TEXELS;
+    uvec4 a = texelFetch(triangles, base);
+    uvec4 b = texelFetch(triangles, base + 1);
+    uvec4 c = texelFetch(triangles, base + 2);
+    return Triangle(uintBitsToFloat(a.xyz), a.w, uintBitsToFloat(b.xyz), b.w, uintBitsToFloat(c.xyz), c.w);
+}
 
 // The rest of an object.
 struct ObjectPlace {
@@ -139,19 +190,43 @@ void world_to_object(uint object, out vec4 rows[3]) {
 
 Material load_material(uint index) {
     int base = int(index) * MATERIAL_TEXELS;
+    vec4 ambient = uintBitsToFloat(texelFetch(materials, base));
+    vec4 lambert = uintBitsToFloat(texelFetch(materials, base + 1));
+    vec4 glossy = uintBitsToFloat(texelFetch(materials, base + 2));
+    vec4 emission = uintBitsToFloat(texelFetch(materials, base + 3));
+    vec4 reflection = uintBitsToFloat(texelFetch(materials, base + 4));
+    vec4 transmission = uintBitsToFloat(texelFetch(materials, base + 5));
+    uvec4 maps = texelFetch(materials, base + 6);
     uvec4 last = texelFetch(materials, base + 7);
-    return Material(
-        uintBitsToFloat(texelFetch(materials, base)), uintBitsToFloat(texelFetch(materials, base + 1)),
-        uintBitsToFloat(texelFetch(materials, base + 2)), uintBitsToFloat(texelFetch(materials, base + 3)),
-        uintBitsToFloat(texelFetch(materials, base + 4)), uintBitsToFloat(texelFetch(materials, base + 5)),
-        texelFetch(materials, base + 6), last.x, last.y);
+    return Material(ambient.rgb, ambient.w, lambert.rgb, lambert.w, glossy.rgb, glossy.w, emission.rgb, emission.w,
+                    reflection.rgb, reflection.w, transmission.rgb, transmission.w, maps.x, maps.y, maps.z, maps.w, last.x, last.y);
 }
 
 Luminaire load_luminaire(uint index) {
     int base = int(index) * LUMINAIRE_TEXELS;
+    vec4 a = uintBitsToFloat(texelFetch(luminaires, base));
+    vec4 b = uintBitsToFloat(texelFetch(luminaires, base + 1));
+    vec4 c = uintBitsToFloat(texelFetch(luminaires, base + 2));
+    vec4 normal = uintBitsToFloat(texelFetch(luminaires, base + 3));
+    vec4 radiance = uintBitsToFloat(texelFetch(luminaires, base + 4));
+    // Kind, threshold, alias, triangle.
     uvec4 choice = texelFetch(luminaires, base + 5);
-    return Luminaire(
-        uintBitsToFloat(texelFetch(luminaires, base)), uintBitsToFloat(texelFetch(luminaires, base + 1)),
-        uintBitsToFloat(texelFetch(luminaires, base + 2)), uintBitsToFloat(texelFetch(luminaires, base + 3)),
-        uintBitsToFloat(texelFetch(luminaires, base + 4)), choice.x, choice.w, texelFetch(luminaires, base + 6).x);
+    uint material = texelFetch(luminaires, base + 6).x;
+    return Luminaire(a.xyz, b.xyz, b.w, c.xyz, c.w, normal.xyz, normal.w, radiance.rgb, radiance.w, choice.x, choice.w, material);
+}
+
+// A slot of an alias table (twin: src/sampling/alias.rs).
+struct AliasSlot {
+    uint threshold;    // below it the slot's own entry
+    uint alias;        // else this one
+};
+
+AliasSlot luminaire_slot(uint slot) {
+    uvec4 choice = texelFetch(luminaires, int(slot) * LUMINAIRE_TEXELS + 5);
+    return AliasSlot(choice.y, choice.z);
+}
+
+AliasSlot environment_slot(uint slot) {
+    uvec4 pair = texelFetch(environment_slots, int(slot >> 1u));
+    return (slot & 1u) == 0u ? AliasSlot(pair.x, pair.y) : AliasSlot(pair.z, pair.w);
 }

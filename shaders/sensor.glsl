@@ -11,21 +11,21 @@ float filter_offset(uint random) {
 }
 
 // A corner of the aperture's polygon.
-vec2 lens_corner(uint k) { return sin_cos_turns(float(k) / frame.lens.z + frame.lens.w).yx; }
+vec2 lens_corner(uint k) { return sin_cos_turns(float(k) / frame.lens_blades + frame.lens_rotation).yx; }
 
 // A point on the aperture, evenly: to the right and up, in the scene's unit.
 vec2 lens_point(uvec2 random) {
     vec2 point;
-    if (frame.lens.z == 0.0) {
+    if (frame.lens_blades == 0.0) {
         point = concentric_disk(uniform2(random));
     } else {
         // The sector is the integer part of the number times the blades, and what is left of it is uniform again.
         uint sector, rest;
-        umulExtended(random.x, uint(frame.lens.z), sector, rest);
+        umulExtended(random.x, uint(frame.lens_blades), sector, rest);
         vec3 b = uniform_triangle(uniform2(uvec2(rest, random.y)));
         point = b.x * lens_corner(sector) + b.y * lens_corner(sector + 1u);
     }
-    return frame.lens.x * point;
+    return frame.lens_radius * point;
 }
 
 // Origin and unit direction of the camera ray for a sample of a pixel.
@@ -38,12 +38,12 @@ void sensor_ray(uvec2 pixel, uint pixel_index, uint sample_index, out vec3 origi
     direction = frame.forward.xyz;
     if (ORTHOGRAPHIC) origin += offset;
     else direction += offset;
-    if (frame.lens.x > 0.0) {
+    if (frame.lens_radius > 0.0) {
         // All rays of a film point meet in one point of the plane of focus.
         vec2 point = lens_point(random.zw);
         offset = point.x * normalize(frame.right.xyz) + point.y * normalize(frame.up.xyz);
         origin += offset;
-        direction = frame.lens.y * direction - offset;
+        direction = frame.focus_distance * direction - offset;
     }
     direction = normalize(direction);
 }

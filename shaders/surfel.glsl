@@ -10,8 +10,16 @@ struct Surfel {
     vec2 uv;                  // where TEXTURES
 };
 
+// Bounds on the error of a position; src/gpu/pack/luminaire.rs takes them over a whole triangle.
+const float UNIT_ROUNDOFF = 5.9604645e-8;       // half a unit in the last place of 1
+const float POINT_ROUNDINGS = 7.0;              // of a point from its weights and the corners
+const float PLANE_ROUNDINGS = 4.0;              // of a point's distance to the triangle's plane in the intersection tests
+const float MOST_NARROW = 256.0;                // by how much the latter grows at most for a narrow triangle
+const float TO_OBJECT_ROUNDINGS = 5.0;          // of the transform of a ray's origin into the object's space
+const float TO_WORLD_ROUNDINGS = 4.0;           // of the transform of a point into world space
+
 // Bound on the relative error of n roundings (Higham).
-float gamma(float n) { return n * 5.9604645e-8 / (1.0 - n * 5.9604645e-8); }
+float gamma(float n) { return n * UNIT_ROUNDOFF / (1.0 - n * UNIT_ROUNDOFF); }
 
 vec3 row_abs_dot(vec4 m[3], vec3 v) { return vec3(dot(abs(m[0].xyz), v), dot(abs(m[1].xyz), v), dot(abs(m[2].xyz), v)); }
 
@@ -22,11 +30,10 @@ vec3 normal_to_world(vec4 to_object[3], vec3 n) {
 
 Surfel surfel(Hit hit, vec3 wo) {
     Surfel s;
-    int base = int(hit.triangle) * 3;
-    uvec4 t0 = texelFetch(triangles, base);
-    vec3 a = uintBitsToFloat(t0.xyz);
-    vec3 b = uintBitsToFloat(texelFetch(triangles, base + 1).xyz);
-    vec3 c = uintBitsToFloat(texelFetch(triangles, base + 2).xyz);
+    Triangle triangle = load_triangle(hit.triangle);
+    vec3 a = triangle.a;
+    vec3 b = triangle.b;
+    vec3 c = triangle.c;
     vec2 w = hit.barycentric;
     vec3 pa = (1.0 - w.x - w.y) * a;
     vec3 pb = w.x * b;
@@ -43,13 +50,14 @@ Surfel surfel(Hit hit, vec3 wo) {
 #else
     float edges = shorter_edges(a, b, c);
 #endif
-    float narrow = min(edges / largest(abs(s.geometric_normal)), 256.0);
-    s.position_error = gamma(7.0) * (abs(pa) + abs(pb) + abs(pc)) + gamma(4.0) * size * narrow;
-    s.material = t0.w;
+    float narrow = min(edges / largest(abs(s.geometric_normal)), MOST_NARROW);
+    s.position_error = gamma(POINT_ROUNDINGS) * (abs(pa) + abs(pb) + abs(pc)) + gamma(PLANE_ROUNDINGS) * size * narrow;
+    s.material = triangle.material;
     if (TEXTURES) s.uv = uv_at(hit.triangle, w);
 
     vec3 n = vec3(0.0);
     if (VERTEX_NORMALS) {
+        int base = int(hit.triangle) * TRIANGLE_TEXELS;
         vec3 na = uintBitsToFloat(texelFetch(normals, base).xyz);
         vec3 nb = uintBitsToFloat(texelFetch(normals, base + 1).xyz);
         vec3 nc = uintBitsToFloat(texelFetch(normals, base + 2).xyz);
@@ -65,9 +73,9 @@ Surfel surfel(Hit hit, vec3 wo) {
         s.position = row_dot(to_world, p) + translation(to_world);
         // Rounding of the transform back into the object's space, when a ray leaves from here.
 #ifdef RAY_QUERY
-        vec3 back = gamma(5.0) * (row_abs_dot(to_object, abs(s.position)) + abs(translation(to_object)));
+        vec3 back = gamma(TO_OBJECT_ROUNDINGS) * (row_abs_dot(to_object, abs(s.position)) + abs(translation(to_object)));
 #else
-        vec3 back = gamma(5.0) * row_abs_dot(to_object, abs(s.position - translation(to_world)));
+        vec3 back = gamma(TO_OBJECT_ROUNDINGS) * row_abs_dot(to_object, abs(s.position - translation(to_world)));
 #endif
         // Only what is across the surface matters. A transform takes distances across a surface to such by one factor, the length that it
         // gives to the normal; the bounds of the single coordinates would grow with its anisotropy.
@@ -76,7 +84,7 @@ Surfel surfel(Hit hit, vec3 wo) {
         float across = dot(abs(object_normal), s.position_error + back) / largest(abs(s.geometric_normal));
         vec3 scaled = s.geometric_normal / largest(abs(s.geometric_normal));
         s.position_error = across / dot(scaled, scaled) * abs(scaled)
-            + gamma(4.0) * (row_abs_dot(to_world, abs(p)) + abs(translation(to_world)));
+            + gamma(TO_WORLD_ROUNDINGS) * (row_abs_dot(to_world, abs(p)) + abs(translation(to_world)));
         if (VERTEX_NORMALS) n = normal_to_world(to_object, n);
         uint material = object_place(hit.object).material;
         if (material != NONE) s.material = material;
@@ -102,12 +110,12 @@ Surfel surfel(Hit hit, vec3 wo) {
 Material material_at(Surfel s) {
     Material material = load_material(s.material);
     if (TEXTURES) {
-        if (SIMPLE && material.maps.x != NONE) material.ambient.rgb *= texture_at(material.maps.x, s.uv).rgb;
-        if (material.maps.y != NONE) material.lambert.rgb *= texture_at(material.maps.y, s.uv).rgb;
-        if (GLOSSY && material.maps.z != NONE) material.glossy.rgb *= texture_at(material.maps.z, s.uv).rgb;
-        if (AREA_LUMINAIRES && material.maps.w != NONE) material.emission.rgb *= texture_at(material.maps.w, s.uv).rgb;
+        if (SIMPLE && material.ambient_map != NONE) material.ambient *= texture_at(material.ambient_map, s.uv).rgb;
+        if (material.lambert_map != NONE) material.lambert *= texture_at(material.lambert_map, s.uv).rgb;
+        if (GLOSSY && material.glossy_map != NONE) material.glossy *= texture_at(material.glossy_map, s.uv).rgb;
+        if (AREA_LUMINAIRES && material.emission_map != NONE) material.emission *= texture_at(material.emission_map, s.uv).rgb;
     }
-    if (AREA_LUMINAIRES && material.one_sided != 0u && !s.front) material.emission.rgb = vec3(0.0);
+    if (AREA_LUMINAIRES && material.one_sided != 0u && !s.front) material.emission = vec3(0.0);
     return material;
 }
 

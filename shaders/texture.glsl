@@ -12,28 +12,40 @@ vec4 texel_at(uint index) {
     return vec4(unpackHalf2x16(halves.x), unpackHalf2x16(halves.y));
 }
 
+// An image's texel in `textures`.
+struct Texture {
+    uint first_texel;    // in `texels`
+    uint width;
+    uint height;
+    bool clamped;
+};
+
+Texture load_texture(uint index) {
+    uvec4 texel = texelFetch(textures, int(index));
+    return Texture(texel.x, texel.y, texel.z, texel.w != 0u);
+}
+
 // Linear RGB and alpha, bilinear between the centres of texels; v points up.
 vec4 texture_at(uint map, vec2 uv) {
-    uvec4 image = texelFetch(textures, int(map));
-    ivec2 size = ivec2(image.yz);
+    Texture image = load_texture(map);
+    ivec2 size = ivec2(image.width, image.height);
     // By the bits: a compiler may assume that no float is infinite.
-    uv = mix(uv, vec2(0.0), equal(floatBitsToUint(uv) & 0x7f800000u, uvec2(0x7f800000u)));
-    bool clamped = image.w != 0u;
-    uv = clamped ? clamp(uv, vec2(0.0), vec2(1.0)) : uv - floor(uv);
+    uv = mix(uv, vec2(0.0), equal(floatBitsToUint(uv) & INFINITY_BITS, uvec2(INFINITY_BITS)));
+    uv = image.clamped ? clamp(uv, vec2(0.0), vec2(1.0)) : uv - floor(uv);
     vec2 p = vec2(uv.x, 1.0 - uv.y) * vec2(size) - 0.5;
     vec2 low = floor(p);
     vec2 f = p - low;
     ivec2 p0 = ivec2(low);
     ivec2 p1 = p0 + 1;
-    if (clamped) {
+    if (image.clamped) {
         p0 = clamp(p0, ivec2(0), size - 1);
         p1 = clamp(p1, ivec2(0), size - 1);
     } else {
         p0 = mix(p0, p0 + size, lessThan(p0, ivec2(0)));
         p1 = mix(p1, p1 - size, greaterThanEqual(p1, size));
     }
-    uint row0 = image.x + uint(p0.y) * image.y;
-    uint row1 = image.x + uint(p1.y) * image.y;
+    uint row0 = image.first_texel + uint(p0.y) * image.width;
+    uint row1 = image.first_texel + uint(p1.y) * image.width;
     vec4 upper = mix(texel_at(row0 + uint(p0.x)), texel_at(row0 + uint(p1.x)), f.x);
     vec4 lower = mix(texel_at(row1 + uint(p0.x)), texel_at(row1 + uint(p1.x)), f.x);
     return mix(upper, lower, f.y);
@@ -42,7 +54,7 @@ vec4 texture_at(uint map, vec2 uv) {
 // The share of light that meets a point of a triangle at all.
 float opacity_at(uint material, uint triangle, vec2 barycentric) {
     Material m = load_material(material);
-    float opacity = m.transmission.w;
+    float opacity = m.opacity;
     uint map = m.opacity_map;
     if (map != NONE) opacity *= texture_at(map, uv_at(triangle, barycentric)).a;
     return opacity;
@@ -51,9 +63,9 @@ float opacity_at(uint material, uint triangle, vec2 barycentric) {
 // Whether a ray stops at a hit, by chance where the surface is partly transparent.
 bool covers(uint salt, uint object, uint triangle, vec2 barycentric) {
     uint material = INSTANCES ? object_place(object).material : NONE;
-    if (material == NONE) material = texelFetch(triangles, int(3u * triangle)).w;
+    if (material == NONE) material = load_triangle(triangle).material;
     Material m = load_material(material);
-    if (m.transmission.w >= 1.0 && m.opacity_map == NONE) return true;
-    uint original = texelFetch(triangles, int(3u * triangle + 1u)).w;
-    return uniform1(coverage(salt, object_place(object).scene_index, original)) < opacity_at(material, triangle, barycentric);
+    if (m.opacity >= 1.0 && m.opacity_map == NONE) return true;
+    uint index_in_mesh = load_triangle(triangle).index_in_mesh;
+    return uniform1(coverage(salt, object_place(object).scene_index, index_in_mesh)) < opacity_at(material, triangle, barycentric);
 }

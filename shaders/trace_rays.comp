@@ -31,7 +31,7 @@ void main() {
     vec3 origin = uintBitsToFloat(x.xyz);
     vec3 direction = uintBitsToFloat(rays[2u * (shots.first + id) + 1u].xyz);
     float t_max = uintBitsToFloat(x.w);
-    uint result = 0x7f800000u;
+    uint result = INFINITY_BITS;
     if (shots.any_hit != 0u) {
         result = floatBitsToUint(occluded(origin, direction, t_max, 0u) ? 1.0 : 0.0);
     } else {

@@ -2,7 +2,7 @@
 
 use luminaire::gpu::{SHADERS, layout};
 use rspirv::dr::{Instruction, Operand};
-use rspirv::spirv::{Decoration, Op};
+use rspirv::spirv::{Decoration, ExecutionMode, Op};
 use std::collections::HashMap;
 use std::io::Write;
 use std::path::Path;
@@ -154,29 +154,255 @@ fn array_strides_are_the_host_s_sizes() {
     assert!(checked >= 2, "only {checked} arrays were found");
 }
 
-/// Structures that the shaders read as texels have as many as the host writes. That each member is where it should be shows in every picture.
-#[test]
-fn structures_of_texels_have_the_host_s_sizes() {
-    let source = std::fs::read_to_string(Path::new(ROOT).join("shaders/scene.glsl")).expect("the sources are here");
-    for (name, size) in [
-        ("OBJECT", size_of::<layout::Object>()),
-        ("MATERIAL", size_of::<layout::Material>()),
-        ("LUMINAIRE", size_of::<layout::Luminaire>()),
-    ] {
-        assert_eq!(size % 16, 0, "{name}");
-        assert!(source.contains(&format!("const int {name}_TEXELS = {};", size / 16)), "{name}: {size} bytes");
+/// The text of every shader and of what they include, with the file's name.
+fn sources() -> Vec<(String, String)> {
+    let folder = std::fs::read_dir(Path::new(ROOT).join("shaders")).expect("the sources are here");
+    let paths = folder.map(|entry| entry.expect("an entry").path());
+    paths
+        .filter(|path| path.extension().is_some_and(|ending| ending == "glsl" || ending == "comp"))
+        .map(|path| {
+            let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+            (name, std::fs::read_to_string(&path).expect("a text"))
+        })
+        .collect()
+}
+
+/// Names of a GLSL structure's members with the bytes at which they lie if it is read from texels in its order: a vector of three begins a
+/// texel, and what follows it fills that up.
+fn members_in_texels(name: &str) -> Vec<(String, usize)> {
+    let head = format!("\nstruct {name} {{\n");
+    let (_, text) = sources().into_iter().find(|(_, text)| text.contains(&head)).expect(name);
+    let body = text.split_once(&head).expect("it was found").1.split_once("\n};").expect("an end").0;
+    let mut end = 0usize;
+    let mut members = vec![];
+    for line in body.lines() {
+        let mut words = line.split_once(';').expect("a member").0.split_whitespace();
+        let (start, size) = match words.next().expect("a type") {
+            "vec3" => (end.next_multiple_of(16), 12),
+            "float" | "uint" | "bool" => (end, 4),
+            other => panic!("{name} has a {other}"),
+        };
+        end = start + size;
+        members.push((words.next().expect("a name").to_string(), start));
     }
-    // Where `load_material`, `load_luminaire` and `object_place` look for what is no vec4.
-    let offset = |members: &[layout::Member], name: &str| members.iter().find(|m| m.0 == name).expect(name).1;
-    let of_material = |name: &str| offset(layout::Material::MEMBERS, name);
-    assert_eq!(["maps", "opacity_map", "one_sided"].map(of_material), [96, 112, 116]);
-    let of_luminaire = |name: &str| offset(layout::Luminaire::MEMBERS, name);
-    assert_eq!(["kind", "threshold", "alias_index", "triangle", "material"].map(of_luminaire), [80, 84, 88, 92, 96]);
-    let of_object = |name: &str| offset(layout::Object::MEMBERS, name);
+    members
+}
+
+/// Structures that the shaders read as texels have the host's members at the host's places, and as many texels.
+#[test]
+fn structures_of_texels_are_laid_out_alike() {
+    let of_host = |members: &[layout::Member], first: usize| -> Vec<(String, usize)> {
+        let named = members.iter().filter(|(member, offset)| !member.starts_with("padding") && *offset >= first);
+        named.map(|(member, offset)| (member.to_string(), offset - first)).collect()
+    };
+    for (name, members) in [
+        ("Triangle", layout::Triangle::MEMBERS),
+        ("Material", layout::Material::MEMBERS),
+        ("Texture", layout::Texture::MEMBERS),
+        ("EnvironmentTexel", layout::EnvironmentTexel::MEMBERS),
+    ] {
+        assert_eq!(members_in_texels(name), of_host(members, 0), "{name}");
+    }
+    // Behind the two maps.
+    let place = std::mem::offset_of!(layout::Object, root_node);
+    assert_eq!((place, std::mem::offset_of!(layout::Object, world_to_object)), (96, 48));
+    assert_eq!(members_in_texels("ObjectPlace"), of_host(layout::Object::MEMBERS, place));
+    // The slot of the alias table is read by itself.
+    let luminaire = of_host(layout::Luminaire::MEMBERS, 0);
+    let in_shader = members_in_texels("Luminaire");
+    let kind = in_shader.iter().position(|(member, _)| member == "kind").expect("a kind");
+    assert_eq!(in_shader[..=kind], luminaire[..=kind]);
     assert_eq!(
-        ["world_to_object", "root_node", "triangle_offset", "material", "scene_index"].map(of_object),
-        [48, 96, 100, 104, 108]
+        luminaire[kind..].iter().map(|(member, offset)| (member.as_str(), *offset)).collect::<Vec<_>>(),
+        [("kind", 80), ("threshold", 84), ("alias_index", 88), ("triangle", 92), ("material", 96)]
     );
+}
+
+/// Every constant of the shaders, with its file.
+fn constants() -> Vec<(String, String, String)> {
+    let mut found = vec![];
+    for (file, text) in sources() {
+        for line in text.lines().filter_map(|line| line.strip_prefix("const ")) {
+            let (definition, _) = line.split_once(';').expect("a constant on one line");
+            let (declaration, value) = definition.split_once(" = ").expect("a value");
+            let name = declaration.split_whitespace().last().expect("a name");
+            found.push((file.clone(), name.to_string(), value.to_string()));
+        }
+    }
+    found
+}
+
+/// A GLSL number.
+fn number(text: &str) -> Option<f64> {
+    let text = text.strip_suffix('u').unwrap_or(text);
+    match text.strip_prefix("0x") {
+        Some(digits) => u32::from_str_radix(digits, 16).ok().map(f64::from),
+        None => text.parse().ok(),
+    }
+}
+
+/// Constants of the shaders that the host has no twin of: what they are for is the shaders' own affair.
+const OWN: [&str; 2] = [
+    "RAY_FLAGS", // of ray queries
+    "IMPULSE",   // stands for a density that there is none of
+];
+
+/// Constants that the host has too, by their names in the shaders.
+fn twins() -> Vec<(&'static str, f64)> {
+    use layout::LuminaireKind;
+    use luminaire::film::MOST_RADIANCE;
+    use luminaire::gpu::bvh::{CwBvhNode, STACK_SIZE};
+    use luminaire::gpu::model::{directions_number, extinction_number, light_sampling_number};
+    use luminaire::gpu::pack::luminaire as bounds;
+    use luminaire::gpu::probe::Function;
+    use luminaire::reference::{luminaire as light, scatter};
+    use luminaire::sampling::{PARTS, SENSOR_BLOCK};
+    use luminaire::scene::{Directions, Extinction, Filter, LightSampling};
+    use std::f64::consts::{FRAC_PI_4, PI};
+
+    assert_eq!(Filter::Box.inverse_cdf(0.5).len().div_ceil(4), layout::FILTER_TEXELS);
+    let texels = |size: usize| {
+        assert_eq!(size % 16, 0);
+        (size / 16) as f64
+    };
+    let mut twins = vec![
+        ("PI", PI),
+        ("QUARTER_PI", FRAC_PI_4),
+        ("INFINITY_BITS", f32::INFINITY.to_bits().into()),
+        ("NONE", layout::NONE.into()),
+        ("BY_ALBEDOS", layout::BY_ALBEDOS.into()),
+        ("MIRROR", layout::MIRROR.into()),
+        ("LONGEST_EDGE", layout::LONGEST_EDGE.into()),
+        ("HAS_PLANE", layout::HAS_PLANE.into()),
+        ("FILTER_TEXELS", layout::FILTER_TEXELS as f64),
+        ("TRIANGLE_TEXELS", texels(size_of::<layout::Triangle>())),
+        ("OBJECT_TEXELS", texels(size_of::<layout::Object>())),
+        ("MATERIAL_TEXELS", texels(size_of::<layout::Material>())),
+        ("LUMINAIRE_TEXELS", texels(size_of::<layout::Luminaire>())),
+        ("NODE_TEXELS", texels(size_of::<CwBvhNode>())),
+        ("STACK_SIZE", STACK_SIZE as f64),
+        ("MOST_RADIANCE", MOST_RADIANCE),
+        ("PARTS", PARTS.into()),
+        ("SENSOR_BLOCK", SENSOR_BLOCK.into()),
+        ("MAX_SURVIVAL", scatter::MAX_SURVIVAL),
+        ("SURE_THROUGHPUT", scatter::SURE_THROUGHPUT),
+        ("NEAR", light::NEAR),
+        ("LEAST_SOLID_ANGLE", light::LEAST_SOLID_ANGLE),
+        ("UNIT_ROUNDOFF", bounds::UNIT_ROUNDOFF),
+        ("POINT_ROUNDINGS", bounds::POINT_ROUNDINGS),
+        ("PLANE_ROUNDINGS", bounds::PLANE_ROUNDINGS),
+        ("MOST_NARROW", bounds::MOST_NARROW),
+        ("TO_OBJECT_ROUNDINGS", bounds::TO_OBJECT_ROUNDINGS),
+        ("TO_WORLD_ROUNDINGS", bounds::TO_WORLD_ROUNDINGS),
+    ];
+    let numbers = [
+        ("POINT", LuminaireKind::Point as u32),
+        ("INFINITE", LuminaireKind::Infinite as u32),
+        ("AREA", LuminaireKind::Area as u32),
+        ("SURROUNDINGS", LuminaireKind::Surroundings as u32),
+        ("LIGHT_NONE", light_sampling_number(LightSampling::None)),
+        ("LIGHT_DIRECT", light_sampling_number(LightSampling::Direct)),
+        ("LIGHT_MIS", light_sampling_number(LightSampling::Mis)),
+        ("DIRECTIONS_UNIFORM", directions_number(Directions::Uniform)),
+        ("DIRECTIONS_COSINE", directions_number(Directions::Cosine)),
+        ("DIRECTIONS_BSDF", directions_number(Directions::Bsdf)),
+        ("EXTINCTION_OFF", extinction_number(Extinction::Off)),
+        ("EXTINCTION_LITERAL", extinction_number(Extinction::Literal)),
+        ("EXTINCTION_SURFACE", extinction_number(Extinction::Surface)),
+        ("EXTINCTION_THROUGHPUT", extinction_number(Extinction::Throughput)),
+        ("RANDOM4", Function::Random4 as u32),
+        ("CLOSEST_HIT", Function::ClosestHit as u32),
+        ("OCCLUDED", Function::Occluded as u32),
+        ("COSINE_HEMISPHERE", Function::CosineHemisphere as u32),
+        ("UNIFORM_TRIANGLE", Function::UniformTriangle as u32),
+        ("CHOOSE_LUMINAIRE", Function::ChooseLuminaire as u32),
+        ("BSDF", Function::Bsdf as u32),
+        ("LEAVE", Function::Leave as u32),
+        ("UNIFORM_HEMISPHERE", Function::UniformHemisphere as u32),
+        ("GLOSSY_HALF_VECTOR", Function::GlossyHalfVector as u32),
+        ("SCATTER", Function::Scatter as u32),
+        ("SPHERICAL_TRIANGLE", Function::SphericalTriangle as u32),
+        ("SAMPLE_ENVIRONMENT", Function::SampleEnvironment as u32),
+        ("ENVIRONMENT_AT", Function::EnvironmentAt as u32),
+        ("TEXTURE_AT", Function::TextureAt as u32),
+        ("REFRACT", Function::Refract as u32),
+        ("SENSOR_RAY", Function::SensorRay as u32),
+        ("NUMBERS", Function::Numbers as u32),
+        ("COVERAGE", Function::Coverage as u32),
+        ("SIN_COS", Function::SinCos as u32),
+    ];
+    twins.extend(numbers.map(|(name, value)| (name, f64::from(value))));
+    twins
+}
+
+/// Every constant of the shaders has the host's value, or is listed as their own.
+#[test]
+fn constants_are_the_host_s() {
+    let twins = twins();
+    let constants = constants();
+    for (file, name, value) in &constants {
+        let same_name = constants.iter().filter(|(_, other, _)| other == name).count();
+        assert_eq!(same_name, 1, "{name} of {file} is defined again elsewhere");
+        if OWN.contains(&name.as_str()) {
+            continue;
+        }
+        let twin = twins.iter().find(|(twin, _)| twin == name);
+        let (_, expected) = twin.unwrap_or_else(|| panic!("{name} of {file} is in neither list of this test"));
+        let found = number(value).unwrap_or_else(|| panic!("{name} of {file} is {value}: no number"));
+        // Integers exactly, others as the shader rounds them.
+        assert!(
+            found == *expected || found as f32 == *expected as f32 && found.fract() != 0.0,
+            "{name} of {file}: {value}, here {expected}"
+        );
+    }
+    let known = twins.iter().map(|(name, _)| *name).chain(OWN);
+    for name in known {
+        assert!(constants.iter().any(|(_, found, _)| found == name), "no shader has {name}");
+    }
+}
+
+/// The numbers that the hash functions are made of stand on both sides. `gpu::functions` compares what comes of them, where there is a
+/// device.
+#[test]
+fn hashes_have_the_host_s_numbers() {
+    let words = |text: &str| -> Vec<String> {
+        let code = text.lines().map(|line| line.split("//").next().unwrap_or_default());
+        code.flat_map(|line| line.split(|c: char| !c.is_ascii_alphanumeric() && c != '_'))
+            .map(|word| word.replace('_', ""))
+            .filter(|word| word.len() > 5 && word.starts_with(|c: char| c.is_ascii_digit()))
+            .map(|word| word.trim_end_matches('u').to_string())
+            .collect()
+    };
+    let read = |file: &str| std::fs::read_to_string(Path::new(ROOT).join(file)).expect("a source");
+    let host = [read("src/sampling/mod.rs"), read("src/sampling/sobol.rs")].map(|text| words(&text)).concat();
+    let shader = words(&read("shaders/rng.glsl"));
+    assert!(shader.len() >= 10, "{shader:?}");
+    for word in shader {
+        // 2^23, which the host writes as a power.
+        assert!(word == "8388608" || host.contains(&word), "{word} is not in src/sampling");
+    }
+}
+
+/// Workgroups are as large as the host takes them to be.
+#[test]
+fn workgroups_have_the_host_s_sizes() {
+    for shader in SHADERS {
+        let module = rspirv::dr::load_bytes(shader.spirv).expect("valid SPIR-V");
+        let size = module.execution_modes.iter().find_map(|mode| match mode.operands.as_slice() {
+            [
+                _,
+                Operand::ExecutionMode(ExecutionMode::LocalSize),
+                Operand::LiteralBit32(x),
+                Operand::LiteralBit32(y),
+                Operand::LiteralBit32(z),
+            ] => Some([*x, *y, *z]),
+            _ => None,
+        });
+        let tiles = shader.name.starts_with("path_trace") || shader.name.starts_with("aov");
+        let expected =
+            if tiles { [layout::TILE_WORKGROUP, layout::TILE_WORKGROUP, 1] } else { [layout::ROW_WORKGROUP, 1, 1] };
+        assert_eq!(size, Some(expected), "{}", shader.name);
+    }
 }
 
 /// The specialization constants have the ids that the host gives them, by name.

@@ -1,6 +1,6 @@
 //! Whether a scene fits into the memory of a device, before anything is uploaded.
 
-use super::Device;
+use super::device::Device;
 use super::layout;
 use super::model::KernelModel;
 use crate::memory::{available, gib};
@@ -29,12 +29,14 @@ impl Budget {
         let features = &model.features;
         let triangles: u64 = scene.meshes.iter().map(|mesh| mesh.triangles.len() as u64).sum();
         let textured = features.textures || features.holes;
-        let triangle = 48 + if features.vertex_normals { 48 } else { 0 } + if textured { 32 } else { 0 };
+        let triangle = size_of::<layout::Triangle>()
+            + if features.vertex_normals { size_of::<layout::VertexNormals>() } else { 0 }
+            + if textured { size_of::<layout::TriangleUvs>() } else { 0 };
         let objects = scene.objects.len() as u64 * size_of::<layout::Object>() as u64;
         let texels: u64 = scene.textures.iter().map(|texture| texture.texels.len() as u64).sum();
         let image = scene.environment.as_ref().and_then(|environment| environment.image.as_ref());
         Budget {
-            geometry: triangles * triangle + objects,
+            geometry: triangles * triangle as u64 + objects,
             acceleration: triangles * if ray_query { ACCELERATION_STRUCTURE } else { BVH_NODES },
             textures: if textured { 8 * texels } else { 0 },
             // A texel with its density, and its slot of the alias table.

@@ -1,6 +1,7 @@
 //! A logical device with one compute queue and a memory allocator.
 
-use super::instance::{Instance, PhysicalDevice};
+use super::instance::Instance;
+use super::physical_device::PhysicalDevice;
 use crate::{Error, Result};
 use ash::{ext, khr, vk};
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};

@@ -1,34 +1,12 @@
 //! A compute pipeline with its one descriptor set.
 
+use super::binding::Binding;
+use super::device::Device;
 use super::shader::Shader;
-use super::{Buffer, Device, TexelBuffer};
 use crate::Result;
 use ash::vk;
 use std::ffi::CStr;
 use std::sync::Arc;
-
-/// What a shader sees at one binding; the position in the list is the binding's number.
-pub enum Binding<'a> {
-    /// A uniform buffer.
-    Uniform(&'a Buffer),
-    /// A storage buffer.
-    Storage(&'a Buffer),
-    /// A `usamplerBuffer`.
-    Texel(&'a TexelBuffer),
-    /// A top-level acceleration structure.
-    AccelerationStructure(vk::AccelerationStructureKHR),
-}
-
-impl Binding<'_> {
-    fn descriptor_type(&self) -> vk::DescriptorType {
-        match self {
-            Binding::Uniform(_) => vk::DescriptorType::UNIFORM_BUFFER,
-            Binding::Storage(_) => vk::DescriptorType::STORAGE_BUFFER,
-            Binding::Texel(_) => vk::DescriptorType::UNIFORM_TEXEL_BUFFER,
-            Binding::AccelerationStructure(_) => vk::DescriptorType::ACCELERATION_STRUCTURE_KHR,
-        }
-    }
-}
 
 /// A compute shader, specialised and bound. The caller keeps the bound resources alive as long as the kernel.
 pub struct Kernel {
@@ -37,6 +15,8 @@ pub struct Kernel {
     set_layout: vk::DescriptorSetLayout,
     pool: vk::DescriptorPool,
     set: vk::DescriptorSet,
+    /// Bytes of the push constants.
+    push_size: u32,
     device: Arc<Device>,
 }
 
@@ -61,6 +41,7 @@ impl Kernel {
             set_layout: vk::DescriptorSetLayout::null(),
             pool: vk::DescriptorPool::null(),
             set: vk::DescriptorSet::null(),
+            push_size,
             device: device.clone(),
         };
         let layout_bindings: Vec<_> = bindings
@@ -162,10 +143,14 @@ impl Kernel {
     }
 
     /// Records a dispatch of `groups` workgroups.
+    ///
+    /// # Panics
+    /// If `push` is not of the size that the kernel was made with.
     pub(crate) fn dispatch(&self, cmd: vk::CommandBuffer, push: &[u8], groups: [u32; 3]) {
+        assert_eq!(push.len(), self.push_size as usize, "push constants");
         let raw = &self.device.raw;
         // SAFETY: called while `cmd` is being recorded; pipeline, layout and set belong together; `push` has the size that
-        // the layout was made with.
+        // the layout was made with (asserted above).
         unsafe {
             raw.cmd_bind_pipeline(cmd, vk::PipelineBindPoint::COMPUTE, self.pipeline);
             raw.cmd_bind_descriptor_sets(cmd, vk::PipelineBindPoint::COMPUTE, self.layout, 0, &[self.set], &[]);

@@ -1,8 +1,40 @@
 //! The structures that the host shares with the shaders (`shaders/scene.glsl`, `path_trace.comp`, `aov.comp`, `probe.comp`, `trace_rays.comp`).
 //!
-//! [`STRUCTS`] lists every member's offset; a test compares it with the offsets in the shipped SPIR-V.
+//! [`STRUCTS`] lists every member's offset; a test compares it with the offsets in the shipped SPIR-V. What shaders read as texels is
+//! compared with the `struct` of the same name in the GLSL, and so are the constants.
 
 use bytemuck::{Pod, Zeroable};
+
+/// An index that is none.
+pub const NONE: u32 = u32::MAX;
+/// [`Material::impulse_probability`] where the albedos say how probable an impulse is.
+pub const BY_ALBEDOS: f32 = -1.0;
+/// [`Material::eta`] of a mirror, which has none.
+pub const MIRROR: f32 = 0.0;
+/// The bits of [`Triangle::shape`] that hold the number of the longest edge.
+pub const LONGEST_EDGE: u32 = 3;
+/// The bit of [`Triangle::shape`] that says that the other two edges give the triangle's plane.
+pub const HAS_PLANE: u32 = 4;
+/// Texels of [`Frame::filter_table`].
+pub const FILTER_TEXELS: usize = 65;
+/// Workgroups of the path tracer and of the first hits are squares of this many pixels a side.
+pub const TILE_WORKGROUP: u32 = 8;
+/// Invocations of a workgroup of the probe and of the kernel that only traces rays, in a row.
+pub const ROW_WORKGROUP: u32 = 64;
+
+/// What [`Luminaire::kind`] says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u32)]
+pub enum LuminaireKind {
+    /// A point.
+    Point = 0,
+    /// At infinity, in one direction.
+    Infinite = 1,
+    /// A triangle that emits.
+    Area = 2,
+    /// The environment, all around.
+    Surroundings = 3,
+}
 
 /// Name and byte offset of a member.
 pub type Member = (&'static str, usize);
@@ -43,12 +75,20 @@ shared! {
         right: [f32; 4],
         /// To the upper edge.
         up: [f32; 4],
-        /// Radius of the aperture, focus distance, blades, rotation in turns.
-        lens: [f32; 4],
+        /// Radius of the aperture; 0: a pinhole.
+        lens_radius: f32,
+        /// Distance of what is sharp.
+        focus_distance: f32,
+        /// Corners of the aperture; 0: it is round.
+        lens_blades: f32,
+        /// Turns by which the aperture is rotated.
+        lens_rotation: f32,
         /// Ambient radiance of the simple ray tracer.
         ambient: [f32; 4],
-        /// Radiance of the environment, or a factor to its image; w: probability of choosing it.
-        environment: [f32; 4],
+        /// Radiance of the environment, or a factor to its image.
+        environment: [f32; 3],
+        /// Probability of choosing the environment among the luminaires.
+        environment_probability: f32,
         /// Film width in pixels.
         width: u32,
         /// Film height in pixels.
@@ -70,9 +110,30 @@ shared! {
         /// To a multiple of 16 bytes.
         padding: [u32; 3],
         /// The filter's inverse cumulative distribution: 257 knots, in pixels.
-        filter_table: [[f32; 4]; 65],
+        filter_table: [[f32; 4]; FILTER_TEXELS],
     }
 }
+
+shared! {
+    /// A triangle in object space (binding 2): three texels, which `load_triangle` reads.
+    Triangle {
+        /// First corner.
+        a: [f32; 3],
+        /// Material, unless the object has one of its own.
+        material: u32,
+        /// Second corner.
+        b: [f32; 3],
+        /// Index in the scene's [`crate::scene::Mesh::triangles`].
+        index_in_mesh: u32,
+        /// Third corner.
+        c: [f32; 3],
+        /// [`LONGEST_EDGE`] (0: from `a` to `b`, 1: to `c`, 2: back to `a`) and [`HAS_PLANE`].
+        shape: u32,
+    }
+}
+
+/// Normals at a triangle's corners (binding 3): three texels, of which the fourth component is nothing.
+pub type VertexNormals = [[f32; 4]; 3];
 
 shared! {
     /// An instance (binding 4): seven texels, which `object_place` and its neighbours in `scene.glsl` read.
@@ -85,7 +146,7 @@ shared! {
         root_node: u32,
         /// The mesh's first triangle.
         triangle_offset: u32,
-        /// Replaces the triangles' own material unless `u32::MAX`.
+        /// Replaces the triangles' own material unless [`NONE`].
         material: u32,
         /// Index in the scene.
         scene_index: u32,
@@ -95,21 +156,39 @@ shared! {
 shared! {
     /// A material (binding 5): eight texels, which `load_material` reads.
     Material {
-        /// Ambient albedo; w: normalisation of the glossy lobe.
-        ambient: [f32; 4],
-        /// Diffuse albedo; w: probability of an impulse, or -1: by the albedos.
-        lambert: [f32; 4],
-        /// Glossy albedo; w: exponent.
-        glossy: [f32; 4],
-        /// Emitted radiance; w: probability of choosing a triangle of this material for each unit of its area.
-        emission: [f32; 4],
-        /// Albedo of the impulse reflection; w: eta, or 0: a mirror.
-        reflection: [f32; 4],
-        /// Albedo of the impulse transmission; w: opacity.
-        transmission: [f32; 4],
-        /// Textures that multiply ambient, lambert, glossy and emission; `u32::MAX`: none.
-        maps: [u32; 4],
-        /// Texture whose alpha multiplies the opacity.
+        /// Ambient albedo.
+        ambient: [f32; 3],
+        /// Normalisation of the glossy lobe.
+        normalisation: f32,
+        /// Diffuse albedo.
+        lambert: [f32; 3],
+        /// Probability of an impulse, or [`BY_ALBEDOS`].
+        impulse_probability: f32,
+        /// Glossy albedo.
+        glossy: [f32; 3],
+        /// Exponent of the glossy lobe.
+        exponent: f32,
+        /// Emitted radiance.
+        emission: [f32; 3],
+        /// Probability of choosing a triangle of this material for each unit of its area.
+        area_density: f32,
+        /// Albedo of the impulse reflection.
+        reflection: [f32; 3],
+        /// Index of refraction inside over that outside, or [`MIRROR`].
+        eta: f32,
+        /// Albedo of the impulse transmission.
+        transmission: [f32; 3],
+        /// Share of light that meets the surface at all.
+        opacity: f32,
+        /// Texture that multiplies `ambient`, or [`NONE`]; so are the next ones.
+        ambient_map: u32,
+        /// The one that multiplies `lambert`.
+        lambert_map: u32,
+        /// The one that multiplies `glossy`.
+        glossy_map: u32,
+        /// The one that multiplies `emission`.
+        emission_map: u32,
+        /// The one whose alpha multiplies `opacity`.
         opacity_map: u32,
         /// 1 if only the outward side emits.
         one_sided: u32,
@@ -122,16 +201,26 @@ shared! {
     /// An entry of the luminaire table (binding 6): seven texels, which `load_luminaire` reads.
     Luminaire {
         /// Position, direction towards the light, or first corner.
-        a: [f32; 4],
-        /// Second corner; w: area.
-        b: [f32; 4],
-        /// Third corner; w: bound on the error of a point on the triangle, in each coordinate.
-        c: [f32; 4],
-        /// Unit outward normal of the triangle; w: 1 if only that side emits.
-        normal: [f32; 4],
-        /// Intensity, irradiance or radiance without its texture; w: probability of being chosen.
-        radiance: [f32; 4],
-        /// 0: point, 1: infinite, 2: area, 3: environment.
+        a: [f32; 3],
+        /// Nothing.
+        padding_a: f32,
+        /// Second corner.
+        b: [f32; 3],
+        /// Area of the triangle.
+        area: f32,
+        /// Third corner.
+        c: [f32; 3],
+        /// Bound on the error of a point on the triangle, in each coordinate.
+        position_error: f32,
+        /// Unit outward normal of the triangle.
+        normal: [f32; 3],
+        /// 1 if only the outward side emits.
+        one_sided: f32,
+        /// Intensity, irradiance or radiance without its texture.
+        radiance: [f32; 3],
+        /// Probability of being chosen.
+        probability: f32,
+        /// A [`LuminaireKind`].
         kind: u32,
         /// Alias table: below it, this entry.
         threshold: u32,
@@ -143,6 +232,44 @@ shared! {
         material: u32,
         /// To a multiple of 16 bytes.
         padding: [u32; 3],
+    }
+}
+
+shared! {
+    /// Texture coordinates of a triangle (binding 9): two texels, which `uv_at` reads.
+    TriangleUvs {
+        /// Of the first corner.
+        a: [f32; 2],
+        /// Of the second.
+        b: [f32; 2],
+        /// Of the third.
+        c: [f32; 2],
+        /// To a multiple of 16 bytes.
+        padding: [u32; 2],
+    }
+}
+
+shared! {
+    /// An image (binding 10): one texel, which `load_texture` reads.
+    Texture {
+        /// Its first texel among those of all textures.
+        first_texel: u32,
+        /// Texels in a row.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// 1 if it ends at its edges, 0 if it repeats.
+        clamped: u32,
+    }
+}
+
+shared! {
+    /// A texel of the environment (binding 12), which `load_environment_texel` reads.
+    EnvironmentTexel {
+        /// Radiance without its factor.
+        radiance: [f32; 3],
+        /// Density of its directions, per steradian.
+        density: f32,
     }
 }
 

@@ -120,26 +120,41 @@ impl KernelModel {
             u32::from(self.orthographic),
             u32::from(self.sampler != Sampler::Independent),
             u32::from(simple),
-            match estimator.light_sampling {
-                LightSampling::None => 0,
-                LightSampling::Direct => 1,
-                LightSampling::Mis => 2,
-            },
+            light_sampling_number(estimator.light_sampling),
             u32::from(estimator.area_sampling == AreaSampling::SolidAngle),
-            match estimator.directions {
-                Directions::Uniform => 0,
-                Directions::Cosine => 1,
-                Directions::Bsdf => 2,
-            },
-            match estimator.extinction {
-                Extinction::Off => 0,
-                Extinction::Literal => 1,
-                Extinction::Surface => 2,
-                Extinction::Throughput => 3,
-            },
+            directions_number(estimator.directions),
+            extinction_number(estimator.extinction),
             u32::from(estimator.albedo_threshold.is_some()),
         ]);
         constants
+    }
+}
+
+/// The number that the shaders know a choice by (`LIGHT_...` in `shaders/scene.glsl`).
+pub fn light_sampling_number(choice: LightSampling) -> u32 {
+    match choice {
+        LightSampling::None => 0,
+        LightSampling::Direct => 1,
+        LightSampling::Mis => 2,
+    }
+}
+
+/// The number that the shaders know a choice by (`DIRECTIONS_...`).
+pub fn directions_number(choice: Directions) -> u32 {
+    match choice {
+        Directions::Uniform => 0,
+        Directions::Cosine => 1,
+        Directions::Bsdf => 2,
+    }
+}
+
+/// The number that the shaders know a choice by (`EXTINCTION_...`).
+pub fn extinction_number(choice: Extinction) -> u32 {
+    match choice {
+        Extinction::Off => 0,
+        Extinction::Literal => 1,
+        Extinction::Surface => 2,
+        Extinction::Throughput => 3,
     }
 }
 

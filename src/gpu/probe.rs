@@ -1,9 +1,12 @@
 //! Runs single shader functions over arrays, so that tests can hold each against its twin.
 
-use super::commands::{self, Recorder};
+use super::bound_scene::BoundScene;
+use super::buffer::Buffer;
+use super::device::Device;
+use super::kernel::Kernel;
+use super::layout::{self, ROW_WORKGROUP};
 use super::scene::GpuScene;
 use super::shader::Shader;
-use super::{Buffer, Device, Kernel, layout};
 use crate::Result;
 use crate::scene::Scene;
 use ash::vk;
@@ -65,12 +68,10 @@ const PIECE: usize = 1 << 18;
 
 /// The probe with a scene, compiled once for all functions.
 pub struct Probe {
+    // Dropped before what it is bound to.
     kernel: Kernel,
-    arguments: RefCell<Buffer>,
-    results: Buffer,
-    readback: Buffer,
-    _kernel_scene: GpuScene,
-    device: Arc<Device>,
+    /// With the arguments.
+    bound: RefCell<BoundScene>,
 }
 
 impl Probe {
@@ -79,28 +80,13 @@ impl Probe {
     /// # Errors
     /// As for [`super::GpuTracer::new`].
     pub fn new(device: &Arc<Device>, scene: &Scene, ray_query: bool) -> Result<Self> {
-        let kernel_scene = GpuScene::new(device, scene, ray_query, |_| {})?;
+        let gpu_scene = GpuScene::new(device, scene, ray_query, |_| {})?;
         let size = (PIECE * size_of::<Call>()) as u64;
-        let buffer = |name: &str, usage, location| Buffer::new(device, name, size, usage, location);
-        let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
-        let (source, target) = (vk::BufferUsageFlags::TRANSFER_SRC, vk::BufferUsageFlags::TRANSFER_DST);
-        let arguments = buffer("probe in", storage, MemoryLocation::CpuToGpu)?;
-        let results = buffer("probe out", storage | source | target, MemoryLocation::GpuOnly)?;
-        let kernel = Kernel::new(
-            device,
-            Shader::probe(ray_query),
-            &kernel_scene.model.constants(),
-            &kernel_scene.bindings(&results, &arguments),
-            size_of::<layout::Call>() as u32,
-        )?;
-        Ok(Probe {
-            kernel,
-            arguments: RefCell::new(arguments),
-            results,
-            readback: buffer("probe readback", target, MemoryLocation::GpuToCpu)?,
-            _kernel_scene: kernel_scene,
-            device: device.clone(),
-        })
+        let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
+        let arguments = Buffer::new(device, "probe in", size, usage, MemoryLocation::CpuToGpu)?;
+        let bound = BoundScene::new(device, gpu_scene, ("probe out", size), arguments, 0)?;
+        let kernel = bound.kernel::<layout::Call>(Shader::probe(ray_query))?;
+        Ok(Probe { kernel, bound: RefCell::new(bound) })
     }
 
     /// Calls `function` once for each of `arguments`.
@@ -108,19 +94,18 @@ impl Probe {
     /// # Errors
     /// If the driver fails.
     pub fn call(&self, function: Function, arguments: &[Call]) -> Result<Vec<Call>> {
-        let device = &self.device;
+        let mut bound = self.bound.borrow_mut();
         let mut results = Vec::with_capacity(arguments.len());
         for piece in arguments.chunks(PIECE) {
             let bytes: &[u8] = bytemuck::cast_slice(piece);
-            self.arguments.borrow_mut().mapped_mut()?[..bytes.len()].copy_from_slice(bytes);
+            bound.extra.mapped_mut()?[..bytes.len()].copy_from_slice(bytes);
             let push = layout::Call { function: function as u32, count: piece.len() as u32 };
-            commands::submit(device, "probe", |cmd| {
-                let recorder = Recorder { device, cmd };
-                recorder.clear(&self.results);
-                recorder.dispatch(&self.kernel, bytemuck::bytes_of(&push), [push.count.div_ceil(64), 1, 1]);
-                recorder.read_back(&self.results, bytes.len() as u64, &self.readback, 0);
+            bound.run("probe", |recorder| {
+                recorder.clear(&bound.results);
+                recorder.dispatch(&self.kernel, &push, [push.count.div_ceil(ROW_WORKGROUP), 1, 1]);
+                recorder.read_back(&bound.results, bytes.len() as u64, 0);
             })?;
-            results.extend(bytemuck::pod_collect_to_vec::<u8, Call>(&self.readback.mapped()?[..bytes.len()]));
+            results.extend(bytemuck::pod_collect_to_vec::<u8, Call>(bound.read(bytes.len())?));
         }
         Ok(results)
     }

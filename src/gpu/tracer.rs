@@ -1,24 +1,22 @@
 //! The GPU tracer: a scene on a device, and the kernel that traces batches of it.
 
-use super::commands::{self, Recorder};
+use super::bound_scene::BoundScene;
+use super::device::Device;
+use super::kernel::Kernel;
+use super::layout::{self, TILE_WORKGROUP};
 use super::model::KernelModel;
 use super::scene::GpuScene;
 use super::shader::Shader;
-use super::{Buffer, Device, Kernel, layout};
 use crate::Result;
 use crate::film::{AovSum, Batch, PixelSum, Rays, SampleId, Tile};
 use crate::render::{SceneTracer, Traced, Tracer};
 use crate::sampling::PARTS;
 use crate::scene::{FilmSettings, Integrator, Scene, Sensor};
-use ash::vk;
-use gpu_allocator::MemoryLocation;
 use std::ops::Range;
 use std::sync::Arc;
 
 /// The most sums of one batch: 24 MiB of results.
 const MAX_SUMS: usize = 1 << 20;
-/// Workgroups are 8 x 8 pixels (`shaders/path_trace.comp`).
-const WORKGROUP: u32 = 8;
 const DROPPED_SIZE: usize = size_of::<layout::Dropped>();
 
 /// Traces batches on a Vulkan device.
@@ -27,12 +25,9 @@ pub struct GpuTracer {
     kernel: Kernel,
     /// For the first hits; made when it is first wanted.
     aov_kernel: Option<Kernel>,
-    scene: GpuScene,
+    /// With the sums, and the samples that were not finite.
+    bound: BoundScene,
     ray_query: bool,
-    sums: Buffer,
-    dropped: Buffer,
-    readback: Buffer,
-    device: Arc<Device>,
 }
 
 impl GpuTracer {
@@ -58,48 +53,23 @@ impl GpuTracer {
     ) -> Result<Self> {
         let gpu_scene = GpuScene::new(device, scene, ray_query, adjust)?;
         let size = (MAX_SUMS * size_of::<layout::PixelSum>()) as u64;
-        let result = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::TRANSFER_SRC;
-        let sums = Buffer::new(device, "sums", size, result, MemoryLocation::GpuOnly)?;
-        let dropped_usage = result | vk::BufferUsageFlags::TRANSFER_DST;
-        let dropped = Buffer::new(device, "dropped", DROPPED_SIZE as u64, dropped_usage, MemoryLocation::GpuOnly)?;
+        let dropped = BoundScene::written(device, "dropped", DROPPED_SIZE as u64)?;
         // The samples that were not finite come back behind the sums.
-        let readback_size = size + DROPPED_SIZE as u64;
-        let readback = Buffer::new(
-            device,
-            "readback",
-            readback_size,
-            vk::BufferUsageFlags::TRANSFER_DST,
-            MemoryLocation::GpuToCpu,
-        )?;
-        let kernel = kernel(device, &gpu_scene, ray_query, &sums, &dropped)?;
-        Ok(GpuTracer {
-            kernel,
-            aov_kernel: None,
-            scene: gpu_scene,
-            ray_query,
-            sums,
-            dropped,
-            readback,
-            device: device.clone(),
-        })
+        let bound = BoundScene::new(device, gpu_scene, ("sums", size), dropped, DROPPED_SIZE as u64)?;
+        let kernel = bound.kernel::<layout::Batch>(Shader::path_trace(ray_query))?;
+        Ok(GpuTracer { kernel, aov_kernel: None, bound, ray_query })
     }
-}
-
-/// The kernel for a scene's model, bound to its buffers.
-fn kernel(device: &Arc<Device>, scene: &GpuScene, ray_query: bool, sums: &Buffer, dropped: &Buffer) -> Result<Kernel> {
-    let (constants, bindings) = (scene.model.constants(), scene.bindings(sums, dropped));
-    Kernel::new(device, Shader::path_trace(ray_query), &constants, &bindings, size_of::<layout::Batch>() as u32)
 }
 
 impl SceneTracer for GpuTracer {
     fn look(&mut self, sensor: &Sensor, film: &FilmSettings) -> Result<()> {
-        self.scene.look(sensor, film)
+        self.bound.scene.look(sensor, film)
     }
 
     fn integrate(&mut self, integrator: &Integrator) -> Result<()> {
         integrator.check_ends()?;
-        self.scene.integrate(integrator)?;
-        self.kernel = kernel(&self.device, &self.scene, self.ray_query, &self.sums, &self.dropped)?;
+        self.bound.scene.integrate(integrator)?;
+        self.kernel = self.bound.kernel::<layout::Batch>(Shader::path_trace(self.ray_query))?;
         Ok(())
     }
 }
@@ -113,26 +83,18 @@ impl Tracer for GpuTracer {
         if count == 0 {
             return Ok(Traced::default());
         }
-        let push = layout::Batch {
-            tile_x: tile.x,
-            tile_y: tile.y,
-            tile_width: tile.width,
-            tile_height: tile.height,
-            first_sample: batch.samples.start,
-            end_sample: batch.samples.end,
-            group: batch.group,
-        };
+        let push = push(tile, batch.samples.clone(), batch.group);
         let size = (count * size_of::<layout::PixelSum>()) as u64;
-        let workgroups = [tile.width.div_ceil(WORKGROUP), tile.height.div_ceil(WORKGROUP), groups.div_ceil(PARTS)];
-        let device_seconds = commands::submit(&self.device, "path trace", |cmd| {
-            let recorder = Recorder { device: &self.device, cmd };
-            recorder.clear(&self.dropped);
-            recorder.dispatch(&self.kernel, bytemuck::bytes_of(&push), workgroups);
-            recorder.read_back(&self.sums, size, &self.readback, 0);
-            recorder.read_back(&self.dropped, DROPPED_SIZE as u64, &self.readback, size);
+        let workgroups =
+            [tile.width.div_ceil(TILE_WORKGROUP), tile.height.div_ceil(TILE_WORKGROUP), groups.div_ceil(PARTS)];
+        let bound = &self.bound;
+        let device_seconds = bound.run("path trace", |recorder| {
+            recorder.clear(&bound.extra);
+            recorder.dispatch(&self.kernel, &push, workgroups);
+            recorder.read_back(&bound.results, size, 0);
+            recorder.read_back(&bound.extra, DROPPED_SIZE as u64, size);
         })?;
-        let bytes = &self.readback.mapped()?[..size as usize + DROPPED_SIZE];
-        let (sums, dropped) = bytes.split_at(size as usize);
+        let (sums, dropped) = bound.read(size as usize + DROPPED_SIZE)?.split_at(size as usize);
         let sums = bytemuck::cast_slice::<u8, layout::PixelSum>(sums)
             .iter()
             .map(|s| PixelSum {
@@ -156,31 +118,17 @@ impl Tracer for GpuTracer {
         }
         let kernel = match self.aov_kernel.take() {
             Some(kernel) => kernel,
-            None => Kernel::new(
-                &self.device,
-                Shader::aov(self.ray_query),
-                &self.scene.model.constants(),
-                &self.scene.bindings(&self.sums, &self.dropped),
-                size_of::<layout::Batch>() as u32,
-            )?,
+            None => self.bound.kernel::<layout::Batch>(Shader::aov(self.ray_query))?,
         };
         let kernel = self.aov_kernel.insert(kernel);
-        let push = layout::Batch {
-            tile_x: tile.x,
-            tile_y: tile.y,
-            tile_width: tile.width,
-            tile_height: tile.height,
-            first_sample: samples.start,
-            end_sample: samples.end,
-            group: 0,
-        };
-        let workgroups = [tile.width.div_ceil(WORKGROUP), tile.height.div_ceil(WORKGROUP), 1];
-        commands::submit(&self.device, "first hits", |cmd| {
-            let recorder = Recorder { device: &self.device, cmd };
-            recorder.dispatch(kernel, bytemuck::bytes_of(&push), workgroups);
-            recorder.read_back(&self.sums, size, &self.readback, 0);
+        let push = push(tile, samples, 0);
+        let workgroups = [tile.width.div_ceil(TILE_WORKGROUP), tile.height.div_ceil(TILE_WORKGROUP), 1];
+        let bound = &self.bound;
+        bound.run("first hits", |recorder| {
+            recorder.dispatch(kernel, &push, workgroups);
+            recorder.read_back(&bound.results, size, 0);
         })?;
-        let sums = bytemuck::cast_slice::<u8, layout::AovSum>(&self.readback.mapped()?[..size as usize]);
+        let sums = bytemuck::cast_slice::<u8, layout::AovSum>(bound.read(size as usize)?);
         let sum = |s: &layout::AovSum| AovSum { albedo: s.albedo, depth: s.depth, normal: s.normal, hits: s.hits };
         Ok(sums.iter().map(sum).collect())
     }
@@ -191,6 +139,19 @@ impl Tracer for GpuTracer {
 
     fn batch_seconds(&self) -> f64 {
         // A GPU also draws the desktop, and its driver kills what runs for seconds.
-        if self.device.software { 0.25 } else { 0.05 }
+        if self.bound.device.software { 0.25 } else { 0.05 }
+    }
+}
+
+/// The push constants for samples of a tile.
+fn push(tile: Tile, samples: Range<u32>, group: u32) -> layout::Batch {
+    layout::Batch {
+        tile_x: tile.x,
+        tile_y: tile.y,
+        tile_width: tile.width,
+        tile_height: tile.height,
+        first_sample: samples.start,
+        end_sample: samples.end,
+        group,
     }
 }

@@ -14,9 +14,9 @@ use glam::DVec3;
 const BEFORE_TARGET: f64 = 1.0 - 1e-9;
 
 /// A triangle is near where its area over the squared distance to its centroid is above this.
-const NEAR: f64 = 0.05;
+pub const NEAR: f64 = 0.05;
 /// Triangles that look smaller, in steradian, are sampled by area: solid angles cancel.
-const LEAST_SOLID_ANGLE: f64 = 1e-3;
+pub const LEAST_SOLID_ANGLE: f64 = 1e-3;
 
 /// Light that would arrive from a luminaire if nothing were between.
 struct Unoccluded {

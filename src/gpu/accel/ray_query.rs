@@ -1,9 +1,12 @@
 //! Bottom-level acceleration structures of the meshes and a top-level one of the objects.
 
 use crate::Result;
+use crate::gpu::buffer::Buffer;
 use crate::gpu::bvh::MeshBvh;
-use crate::gpu::layout::Object;
-use crate::gpu::{Buffer, Device, TexelBuffer, barrier, submit};
+use crate::gpu::device::Device;
+use crate::gpu::layout::{Object, Triangle};
+use crate::gpu::submission::{barrier, submit};
+use crate::gpu::texel_buffer::TexelBuffer;
 use crate::scene::{self, Scene};
 use ash::vk;
 use gpu_allocator::MemoryLocation;
@@ -51,7 +54,7 @@ impl TopLevel {
         for (mesh, place) in scene.meshes.iter().zip(meshes) {
             let count = place.order.len() as u64;
             device.check_limit(&mesh.name, count, device.max_primitives, "triangles (maxPrimitiveCount)", ADVICE)?;
-            let address = triangles.buffer.address() + u64::from(place.triangle_offset) * 48;
+            let address = triangles.buffer.address() + u64::from(place.triangle_offset) * size_of::<Triangle>() as u64;
             // Every corner is 16 bytes, the last four of which are not a coordinate; three make a triangle, without indices.
             let data = vk::AccelerationStructureGeometryTrianglesDataKHR::default()
                 .vertex_format(vk::Format::R32G32B32_SFLOAT)

@@ -1,6 +1,6 @@
 //! Recording and submitting work, one batch at a time.
 
-use super::{Buffer, Device, Kernel};
+use super::device::Device;
 use crate::Result;
 use ash::vk;
 use std::sync::Arc;
@@ -110,39 +110,4 @@ pub(crate) fn barrier(
     let memory = [vk::MemoryBarrier::default().src_access_mask(from.1).dst_access_mask(to.1)];
     // SAFETY: called while `cmd` is being recorded, by the closures given to `submit`.
     unsafe { device.raw.cmd_pipeline_barrier(cmd, from.0, to.0, vk::DependencyFlags::empty(), &memory, &[], &[]) };
-}
-
-/// Records the three parts of every kernel run, with the barriers between them.
-pub(crate) struct Recorder<'a> {
-    pub(crate) device: &'a Device,
-    pub(crate) cmd: vk::CommandBuffer,
-}
-
-impl Recorder<'_> {
-    /// Fills a buffer with zeros, before the kernel.
-    pub(crate) fn clear(&self, buffer: &Buffer) {
-        // SAFETY: called while the commands are being recorded; the buffer is alive until the submission has ended.
-        unsafe { self.device.raw.cmd_fill_buffer(self.cmd, buffer.raw, 0, vk::WHOLE_SIZE, 0) };
-    }
-
-    /// Runs the kernel on what was cleared.
-    pub(crate) fn dispatch(&self, kernel: &Kernel, push: &[u8], groups: [u32; 3]) {
-        let shader_access = vk::AccessFlags::SHADER_READ | vk::AccessFlags::SHADER_WRITE;
-        let written = (vk::PipelineStageFlags::TRANSFER, vk::AccessFlags::TRANSFER_WRITE);
-        barrier(self.device, self.cmd, written, (vk::PipelineStageFlags::COMPUTE_SHADER, shader_access));
-        kernel.dispatch(self.cmd, push, groups);
-        let results = (vk::PipelineStageFlags::COMPUTE_SHADER, vk::AccessFlags::SHADER_WRITE);
-        let copies = (vk::PipelineStageFlags::TRANSFER, vk::AccessFlags::TRANSFER_READ);
-        barrier(self.device, self.cmd, results, copies);
-    }
-
-    /// Copies the first `size` bytes of a buffer to an offset in another, for the host to read after the submission.
-    pub(crate) fn read_back(&self, from: &Buffer, size: u64, to: &Buffer, offset: u64) {
-        let copy = [vk::BufferCopy { src_offset: 0, dst_offset: offset, size }];
-        // SAFETY: called while the commands are being recorded; both buffers are alive until the submission has ended, and
-        // the callers' ranges lie inside them.
-        unsafe { self.device.raw.cmd_copy_buffer(self.cmd, from.raw, to.raw, &copy) };
-        let written = (vk::PipelineStageFlags::TRANSFER, vk::AccessFlags::TRANSFER_WRITE);
-        barrier(self.device, self.cmd, written, (vk::PipelineStageFlags::HOST, vk::AccessFlags::HOST_READ));
-    }
 }

@@ -1,0 +1,72 @@
+//! Sensor and estimator.
+
+use crate::gpu::layout;
+use crate::scene::{FilmSettings, Integrator, LuminaireTable, Projection, Scene, Sensor};
+use bytemuck::Zeroable;
+use glam::Vec3;
+
+/// Sensor, film, integrator and environment of a scene.
+pub(in crate::gpu) fn frame(scene: &Scene, table: &LuminaireTable) -> layout::Frame {
+    let (radiance, rotation) = scene.environment.as_ref().map_or((Vec3::ZERO, 0.0), |e| (e.radiance, e.rotation));
+    let (environment_width, environment_height) = table.environment.as_ref().map_or((1, 1), |e| (e.width, e.height));
+    let mut frame = layout::Frame {
+        environment: radiance.to_array(),
+        environment_probability: table.environment_probability() as f32,
+        seed: scene.settings.seed,
+        luminaire_count: table.entries.len() as u32,
+        environment_width,
+        environment_height,
+        environment_rotation: turns(rotation),
+        ..Zeroable::zeroed()
+    };
+    aim(&mut frame, &scene.sensor, &scene.film);
+    estimate(&mut frame, &scene.integrator);
+    frame
+}
+
+/// Puts the integrator's numbers into a frame.
+pub(in crate::gpu) fn estimate(frame: &mut layout::Frame, integrator: &Integrator) {
+    let (ambient, max_bounces, albedo_threshold) = match *integrator {
+        Integrator::Simple { ambient } => (ambient, 0, 0.0),
+        Integrator::Path(estimator) => {
+            (Vec3::ZERO, estimator.max_bounces.unwrap_or(u32::MAX), estimator.albedo_threshold.unwrap_or(0.0))
+        }
+    };
+    frame.ambient = vec4(ambient);
+    (frame.max_bounces, frame.albedo_threshold) = (max_bounces, albedo_threshold);
+}
+
+/// Puts the camera and the film into a frame.
+pub(in crate::gpu) fn aim(frame: &mut layout::Frame, sensor: &Sensor, film: &FilmSettings) {
+    let Sensor { position, target, up, projection, lens } = *sensor;
+    // In f64 like the reference: these are rounded once.
+    let forward = (target.as_dvec3() - position.as_dvec3()).normalize();
+    let right = forward.cross(up.as_dvec3()).normalize();
+    let true_up = right.cross(forward);
+    let aspect = f64::from(film.width) / f64::from(film.height);
+    let half = match projection {
+        Projection::Perspective { fov } => (f64::from(fov).to_radians() / 2.0).tan(),
+        Projection::Orthographic { height } => f64::from(height) / 2.0,
+    };
+    frame.position = vec4(position);
+    frame.forward = vec4(forward.as_vec3());
+    frame.right = vec4((right * half * aspect).as_vec3());
+    frame.up = vec4((true_up * half).as_vec3());
+    (frame.lens_radius, frame.focus_distance) = lens.map_or((0.0, 1.0), |lens| (lens.radius, lens.focus_distance));
+    frame.lens_blades = lens.map_or(0.0, |lens| lens.blades as f32);
+    frame.lens_rotation = lens.map_or(0.0, |lens| turns(lens.rotation));
+    (frame.width, frame.height) = (film.width, film.height);
+    for (knot, offset) in film.filter.inverse_cdf(film.filter_radius).into_iter().enumerate() {
+        frame.filter_table[knot / 4][knot % 4] = offset;
+    }
+}
+
+/// `v` with a fourth component that says nothing.
+fn vec4(v: Vec3) -> [f32; 4] {
+    v.extend(0.0).to_array()
+}
+
+/// Degrees as a part of a turn, in [0, 1).
+fn turns(degrees: f32) -> f32 {
+    (f64::from(degrees) / 360.0).rem_euclid(1.0) as f32
+}

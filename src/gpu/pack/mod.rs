@@ -1,0 +1,7 @@
+//! The scene's plain data in the form of [`super::layout`].
+
+pub(super) mod frame;
+pub mod luminaire;
+pub(super) mod material;
+pub(super) mod texture;
+pub(super) mod triangle;

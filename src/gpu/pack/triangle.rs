@@ -1,0 +1,81 @@
+//! Triangles and objects, in the order in which the kernel counts them.
+
+use crate::gpu::bvh::MeshBvh;
+use crate::gpu::layout::{self, HAS_PLANE, VertexNormals};
+use crate::scene::{Mesh, Scene, Triangle, widen};
+use glam::{DAffine3, Vec2, Vec3};
+
+/// Each triangle of each mesh, with its index in the mesh, in the order of `meshes`.
+fn in_order<'a>(scene: &'a Scene, meshes: &'a [MeshBvh]) -> impl Iterator<Item = (&'a Mesh, u32, &'a Triangle)> {
+    scene.meshes.iter().zip(meshes).flat_map(|(mesh, place)| {
+        let mesh: &Mesh = mesh;
+        place.order.iter().map(move |&index| (mesh, index, &mesh.triangles[index as usize]))
+    })
+}
+
+/// The triangles of all meshes.
+pub(in crate::gpu) fn triangles(scene: &Scene, meshes: &[MeshBvh]) -> Vec<layout::Triangle> {
+    let mut packed = Vec::with_capacity(count(meshes));
+    packed.extend(in_order(scene, meshes).map(|(mesh, index_in_mesh, triangle)| {
+        let corners = triangle.vertices.map(|v| mesh.positions[v as usize]);
+        let [a, b, c] = corners.map(|corner| corner.to_array());
+        layout::Triangle { a, material: triangle.material, b, index_in_mesh, c, shape: shape(corners) }
+    }));
+    packed
+}
+
+/// Their vertex normals; zero where a mesh has none.
+pub(in crate::gpu) fn vertex_normals(scene: &Scene, meshes: &[MeshBvh]) -> Vec<VertexNormals> {
+    let mut packed = Vec::with_capacity(count(meshes));
+    packed.extend(in_order(scene, meshes).map(|(mesh, _, triangle)| {
+        triangle.vertices.map(|v| mesh.normals.get(v as usize).copied().unwrap_or(Vec3::ZERO).extend(0.0).to_array())
+    }));
+    packed
+}
+
+/// Their texture coordinates; zero where a mesh has none.
+pub(in crate::gpu) fn texture_coordinates(scene: &Scene, meshes: &[MeshBvh]) -> Vec<layout::TriangleUvs> {
+    let mut packed = Vec::with_capacity(count(meshes));
+    packed.extend(in_order(scene, meshes).map(|(mesh, _, triangle)| {
+        let [a, b, c] = triangle.vertices.map(|v| mesh.uvs.get(v as usize).copied().unwrap_or(Vec2::ZERO).to_array());
+        layout::TriangleUvs { a, b, c, padding: [0; 2] }
+    }));
+    packed
+}
+
+/// How many triangles all meshes have.
+fn count(meshes: &[MeshBvh]) -> usize {
+    meshes.iter().map(|mesh| mesh.order.len()).sum()
+}
+
+/// The object of this index in the scene.
+pub(in crate::gpu) fn object(scene: &Scene, meshes: &[MeshBvh], index: u32) -> layout::Object {
+    let object = &scene.objects[index as usize];
+    let place = &meshes[object.mesh as usize];
+    let to_world = widen(object.object_to_world);
+    layout::Object {
+        object_to_world: rows(to_world),
+        world_to_object: rows(to_world.inverse()),
+        root_node: place.root,
+        triangle_offset: place.triangle_offset,
+        material: object.material.unwrap_or(layout::NONE),
+        scene_index: index,
+    }
+}
+
+/// The rows of an affine map, rounded to `f32`.
+fn rows(map: DAffine3) -> [[f32; 4]; 3] {
+    let m = map.matrix3;
+    [0, 1, 2].map(|r| [m.x_axis[r], m.y_axis[r], m.z_axis[r], map.translation[r]].map(|x| x as f32))
+}
+/// What the kernel's distance along a ray needs to know of a triangle: [`layout::LONGEST_EDGE`] (0: from the first corner to the second,
+/// 1: to the third, 2: back), and [`HAS_PLANE`] if the other two edges say what plane it lies in.
+fn shape([a, b, c]: [Vec3; 3]) -> u32 {
+    let edges = [b - a, c - b, a - c];
+    let lengths = edges.map(|edge| edge.abs().max_element());
+    let longest = (0..3).rev().max_by(|i, j| lengths[*i].total_cmp(&lengths[*j])).unwrap_or(0);
+    let (next, last) = ((longest + 1) % 3, (longest + 2) % 3);
+    let normal = edges[next].cross(edges[last]);
+    let plane = normal.abs().max_element() > 1e-4 * lengths[next] * lengths[last];
+    longest as u32 | if plane { HAS_PLANE } else { 0 }
+}
