@@ -10,6 +10,8 @@ use luminaire::gpu::model::{Features, KernelModel};
 use luminaire::gpu::{Device, GpuTracer, Instance};
 use luminaire::render::Tracer;
 use luminaire::scene::{self, Scene};
+use luminaire_measure::bench::rounds::{Rounds, Spread};
+use luminaire_measure::report::markdown;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
@@ -39,8 +41,8 @@ fn main() {
     let physical = instance.devices().unwrap_or_else(|e| panic!("{e}"));
     let preferred = luminaire::backend::devices().unwrap_or_else(|e| panic!("{e}")).into_iter().find(|d| d.preferred);
     let physical = &physical[preferred.expect("a usable device").index];
-    println!("| scene | backend | with | seconds with / without: median (least to most) | first use, s |");
-    println!("|---|---|---|---|---|");
+    let columns = ["scene", "backend", "with", "seconds with / without: median (least to most)", "first use, s"];
+    print!("{}", markdown::head(&columns));
     for path in std::env::args().skip(1) {
         let mut scene = scene::load(Path::new(&path)).unwrap_or_else(|e| panic!("{e}"));
         scene.film.width = SIZE;
@@ -65,18 +67,19 @@ fn main() {
                     seconds
                 })
                 .collect();
-            let mut ratios = vec![Vec::new(); tracers.len()];
+            let mut ratios = vec![Rounds::default(); tracers.len()];
             for _ in 0..ROUNDS {
                 for which in 1..tracers.len() {
                     let without = seconds(&mut tracers[0].1);
-                    ratios[which].push(seconds(&mut tracers[which].1) / without);
+                    ratios[which].0.push(seconds(&mut tracers[which].1) / without);
                 }
             }
             let backend = if ray_query { "ray-query" } else { "compute-bvh" };
-            for ((feature, _), (ratios, first)) in tracers.iter().zip(ratios.iter_mut().zip(first)).skip(1) {
-                ratios.sort_by(f64::total_cmp);
-                let (median, least, most) = (ratios[ROUNDS / 2], ratios[0], ratios[ROUNDS - 1]);
-                println!("| {name} | {backend} | {feature} | {median:.2} ({least:.2} to {most:.2}) | {first:.1} |");
+            for ((feature, _), (ratios, first)) in tracers.iter().zip(ratios.iter().zip(first)).skip(1) {
+                let Spread { median, least, most } = ratios.spread();
+                let ratio = format!("{median:.2} ({least:.2} to {most:.2})");
+                let first = format!("{first:.1}");
+                print!("{}", markdown::row(&[name.as_ref(), backend, feature, &ratio, &first]));
             }
         }
     }

@@ -122,7 +122,7 @@ mod tests {
 
     /// The colour of a value stands in the scale at the tick of that value.
     #[test]
-    fn the_scale_tells_the_value() {
+    fn the_scale_shows_the_value() {
         for width in [160, 500, 2000] {
             let dot = (width / 480).clamp(1, 4);
             let map = heat_map(width, 1, &vec![0.01; width as usize], 1e-3, 1.0);

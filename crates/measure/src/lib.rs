@@ -10,6 +10,7 @@ pub mod heat_map;
 pub mod intersect_f32;
 pub mod metrics;
 pub mod rays;
+pub mod report;
 pub mod stability;
 pub mod statistics;
 mod workbench;

@@ -20,7 +20,7 @@ pub enum ErrorSource {
 pub struct Bias {
     /// Mean of the picture less mean of the reference.
     pub difference: f64,
-    /// Standard error of `difference`; NaN where there is only one pixel to tell from.
+    /// Standard error of `difference`; NaN where it would have to be estimated from one pixel.
     pub error: f64,
     /// `difference` as a part of the reference's mean; 0 where nothing differs, infinite where the reference is black.
     pub ratio: f64,
@@ -50,7 +50,7 @@ pub struct NonFinite {
     pub first: Option<(u32, u32)>,
 }
 
-/// A picture held against a reference. All means are over the pixels that are finite in both (NaN if there are none), and over the channels where
+/// A picture compared with a reference. All means are over the pixels that are finite in both (NaN if there are none), and over the channels where
 /// there is one number only.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Comparison {

@@ -48,7 +48,7 @@ fn nothing_is_lost_up_to_10_000_sizes_from_the_origin() {
         // The driver's ray query may lose some at vertices, but meets nothing again.
         assert_most(chart(&sweep.charts, &format!("self-hits-{way}")), RAY_QUERY, 0.0);
     }
-    // What has no such care fails: the sweep can tell.
+    // What has no such care fails, and the sweep shows it.
     assert!(values(chart(&sweep.charts, "lost-vertices"), "f32 Möller-Trumbore").iter().all(|lost| *lost > 1e3));
     assert!(values(chart(&sweep.charts, "self-hits-vertices"), "f32 watertight, t_min")[2] > 1e3);
 }

@@ -6,6 +6,7 @@ use luminaire::scene;
 use luminaire_measure::Workbench;
 use luminaire_measure::calibration::{Calibration, calibrate};
 use luminaire_measure::chart::{Axis, Chart, Point, Series};
+use luminaire_measure::report::table::Table;
 use std::error::Error;
 use std::path::Path;
 
@@ -26,10 +27,16 @@ const COVERED: std::ops::RangeInclusive<f64> = 0.92..=0.98;
 pub fn measure(bench: &Workbench, images: &Path, texts: &mut Texts) -> Result<(), Box<dyn Error>> {
     let backend = if bench.backends().contains(&Backend::ComputeBvh) { Backend::ComputeBvh } else { Backend::Cpu };
     let (width, truth) = if bench.long { (2 * WIDTH, 4 * TRUTH) } else { (WIDTH, TRUTH) };
-    let mut table = String::from(
-        "| scene | samples | true relative error | estimated / true relMSE: mean | least to most of the seeds | in the 95 % interval | fireflies | relMSE with them / without |\n\
-         |---|---|---|---|---|---|---|---|\n",
-    );
+    let mut table = Table::new([
+        "scene",
+        "samples",
+        "true relative error",
+        "estimated / true relMSE: mean",
+        "least to most of the seeds",
+        "in the 95 % interval",
+        "fireflies",
+        "relMSE with them / without",
+    ]);
     let mut chart = Chart {
         name: "calibration".into(),
         title: format!("Estimated over true relMSE, {SEEDS} seeds each"),
@@ -48,7 +55,7 @@ pub fn measure(bench: &Workbench, images: &Path, texts: &mut Texts) -> Result<()
         let mut points = vec![];
         for c in &found {
             let ratio = c.ratio();
-            table += &row(name, c);
+            table.rows.push(row(name, c));
             points.push(Point { x: f64::from(c.spp), y: ratio.mean, error: Some(ratio.error) });
             if !PROMISE.contains(&ratio.mean) {
                 off.push(format!("`{name}` at {} ({:.2})", c.spp, ratio.mean));
@@ -65,7 +72,7 @@ pub fn measure(bench: &Workbench, images: &Path, texts: &mut Texts) -> Result<()
         what => format!("{} of {total}; outside: {}", total - what.len(), what.join(", ")),
     };
     let total = SCENES.len() * SAMPLES.len();
-    texts.insert("calibration", table);
+    texts.insert("calibration", table.markdown());
     texts.insert("calibration-ratio", outside(&off, total));
     texts.insert("calibration-covered", outside(&uncovered, total));
     texts.insert("calibration-backend", backend.to_string());
@@ -74,16 +81,17 @@ pub fn measure(bench: &Workbench, images: &Path, texts: &mut Texts) -> Result<()
     Ok(())
 }
 
-fn row(name: &str, c: &Calibration) -> String {
+fn row(name: &str, c: &Calibration) -> Vec<String> {
     let least = c.ratios.iter().copied().fold(f64::INFINITY, f64::min);
     let most = c.ratios.iter().copied().fold(0.0, f64::max);
-    format!(
-        "| {name} | {} | {:.1} % | {:.2} | {least:.2} to {most:.2} | {:.1} % | {:.2} % | {:.2} |\n",
-        c.spp,
-        100.0 * c.rel_mse.sqrt(),
-        c.ratio().mean,
-        100.0 * c.covered,
-        100.0 * c.fireflies,
-        c.with_fireflies
-    )
+    vec![
+        name.to_owned(),
+        c.spp.to_string(),
+        format!("{:.1} %", 100.0 * c.rel_mse.sqrt()),
+        format!("{:.2}", c.ratio().mean),
+        format!("{least:.2} to {most:.2}"),
+        format!("{:.1} %", 100.0 * c.covered),
+        format!("{:.2} %", 100.0 * c.fireflies),
+        format!("{:.2}", c.with_fireflies),
+    ]
 }

@@ -32,7 +32,7 @@ pub fn measure(bench: &Workbench, images: &Path, texts: &mut Texts) -> Result<()
         ("closed-forms-furthest", format!("z = {:.1} ({})", verdict.z, verdict.furthest)),
         ("closed-forms-largest", format!("{:.2}", verdict.largest)),
         ("closed-forms-squares", format!("{:.2}", verdict.squares)),
-        ("closed-forms-blunt", format!("{:.1} % ({})", 100.0 * verdict.blunt.0, verdict.blunt.1)),
+        ("closed-forms-blunt", format!("{:.1} % ({})", 100.0 * verdict.bluntest_error, verdict.bluntest)),
     ]);
     Ok(())
 }

@@ -12,6 +12,8 @@ use luminaire::scene::{
     self, AreaSampling, Directions, Estimator, Extinction, Integrator, LightSampling, PRESETS, Sampler, Scene,
 };
 use luminaire_measure::Workbench;
+use luminaire_measure::bench::rounds::Rounds;
+use luminaire_measure::report::table::Table;
 use std::error::Error;
 use std::path::Path;
 use std::time::Instant;
@@ -20,8 +22,16 @@ const SCENES: [&str; 3] = ["cornell", "plates", "textures"];
 const SIZE: u32 = 64;
 const SAMPLES: u32 = 16;
 
-/// Mean radiance of each pixel over some samples, the seconds it took, and the rays.
-fn picture(tracer: &mut dyn Tracer, samples: std::ops::Range<u32>) -> luminaire::Result<(Vec<[f64; 3]>, f64, u64)> {
+/// A small picture, and what it took.
+struct Picture {
+    /// Mean radiance of each pixel.
+    mean: Vec<[f64; 3]>,
+    seconds: f64,
+    rays: u64,
+}
+
+/// Renders some samples.
+fn picture(tracer: &mut dyn Tracer, samples: std::ops::Range<u32>) -> luminaire::Result<Picture> {
     let tile = Tile { x: 0, y: 0, width: SIZE, height: SIZE };
     let mut sums = vec![[0.0; 3]; tile.pixels()];
     let mut rays = 0;
@@ -38,7 +48,7 @@ fn picture(tracer: &mut dyn Tracer, samples: std::ops::Range<u32>) -> luminaire:
     }
     let seconds = start.elapsed().as_secs_f64();
     let n = f64::from(samples.end - samples.start);
-    Ok((sums.into_iter().map(|p| p.map(|x| x / n)).collect(), seconds, rays))
+    Ok(Picture { mean: sums.into_iter().map(|p| p.map(|x| x / n)).collect(), seconds, rays })
 }
 
 fn relative_mse(found: &[[f64; 3]], expected: &[[f64; 3]]) -> f64 {
@@ -59,15 +69,13 @@ struct Found {
     error: f64,
     mean: f64,
     rays: u64,
-    seconds: Vec<f64>,
+    seconds: Rounds,
 }
 
 impl Found {
     /// Error times the median of the seconds.
     fn product(&self) -> f64 {
-        let mut seconds = self.seconds.clone();
-        seconds.sort_by(f64::total_cmp);
-        self.error * seconds[seconds.len() / 2]
+        self.error * self.seconds.median()
     }
 }
 
@@ -100,11 +108,9 @@ pub fn measure(bench: &Workbench, texts: &mut Texts) -> Result<(), Box<dyn Error
     if backends.len() > 1 {
         backends.retain(|backend| *backend != Backend::Cpu);
     }
-    let mut table = String::from("| scene | estimator | relMSE | rays a sample | mean / reference |");
-    for backend in &backends {
-        table += &format!(" {backend}: relMSE x s | to default |");
-    }
-    table += &format!("\n|---|---|---|---|---|{}\n", "---|---|".repeat(backends.len()));
+    let mut columns = ["scene", "estimator", "relMSE", "rays a sample", "mean / reference"].map(String::from).to_vec();
+    columns.extend(backends.iter().flat_map(|backend| [format!("{backend}: relMSE x s"), "to default".into()]));
+    let mut table = Table::new(columns);
     for name in SCENES {
         let mut scene = scene::load(Path::new(&format!("scenes/{name}/{name}.toml")))?;
         (scene.film.width, scene.film.height) = (SIZE, SIZE);
@@ -117,7 +123,7 @@ pub fn measure(bench: &Workbench, texts: &mut Texts) -> Result<(), Box<dyn Error
             scene
         };
         let mut tracer = bench.tracer(&with(77, &rows[default]), backends[0])?;
-        let (reference, ..) = picture(tracer.as_mut(), 0..reference_samples)?;
+        let reference = picture(tracer.as_mut(), 0..reference_samples)?.mean;
         let mean = |picture: &[[f64; 3]]| picture.iter().flatten().sum::<f64>();
         let mut found: Vec<Vec<Found>> = Vec::new();
         for &backend in &backends {
@@ -127,13 +133,13 @@ pub fn measure(bench: &Workbench, texts: &mut Texts) -> Result<(), Box<dyn Error
             let mut here: Vec<Found> = rows.iter().map(|_| Found::default()).collect();
             for round in 0..=rounds {
                 for (found, tracer) in here.iter_mut().zip(&mut tracers) {
-                    let (picture, seconds, rays) = picture(tracer.as_mut(), round * SAMPLES..(round + 1) * SAMPLES)?;
+                    let picture = picture(tracer.as_mut(), round * SAMPLES..(round + 1) * SAMPLES)?;
                     // The first round compiles the shader.
                     if round > 0 {
-                        found.error += relative_mse(&picture, &reference) / f64::from(rounds);
-                        found.mean += mean(&picture) / mean(&reference) / f64::from(rounds);
-                        found.rays += rays;
-                        found.seconds.push(seconds);
+                        found.error += relative_mse(&picture.mean, &reference) / f64::from(rounds);
+                        found.mean += mean(&picture.mean) / mean(&reference) / f64::from(rounds);
+                        found.rays += picture.rays;
+                        found.seconds.0.push(picture.seconds);
                     }
                 }
             }
@@ -142,15 +148,21 @@ pub fn measure(bench: &Workbench, texts: &mut Texts) -> Result<(), Box<dyn Error
         for (index, row) in rows.iter().enumerate() {
             let first = &found[0][index];
             let rays = first.rays as f64 / f64::from(rounds * SAMPLES * SIZE * SIZE);
-            table += &format!("| {name} | {} | {:.2e} | {rays:.2} | {:.3} |", row.name, first.error, first.mean);
+            let mut cells = vec![
+                name.to_owned(),
+                row.name.clone(),
+                format!("{:.2e}", first.error),
+                format!("{rays:.2}"),
+                format!("{:.3}", first.mean),
+            ];
             for here in &found {
                 let product = here[index].product();
-                table += &format!(" {product:.2e} | {:.2} |", product / here[default].product());
+                cells.extend([format!("{product:.2e}"), format!("{:.2}", product / here[default].product())]);
             }
-            table += "\n";
+            table.rows.push(cells);
         }
     }
-    texts.insert("estimators", table);
+    texts.insert("estimators", table.markdown());
     texts.insert("estimators-rounds", rounds.to_string());
     texts.insert("estimators-reference", reference_samples.to_string());
     Ok(())

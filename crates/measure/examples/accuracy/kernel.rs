@@ -4,6 +4,7 @@ use crate::Texts;
 use luminaire::backend::Backend;
 use luminaire::scene::{self, Integrator, Sampler, Scene};
 use luminaire_measure::Workbench;
+use luminaire_measure::report::table::Table;
 use luminaire_measure::statistics::{Image, compare, render, sidak, total, two_sided};
 use std::error::Error;
 use std::path::Path;
@@ -31,10 +32,17 @@ pub fn measure(bench: &Workbench, texts: &mut Texts) -> Result<(), Box<dyn Error
     let picture = |scene: &Scene, backend, samples| -> luminaire::Result<Image> {
         Ok(render(bench.tracer(scene, backend)?.as_mut(), scene.film.width, scene.film.height, samples, GROUPS))
     };
-    let mut table = String::from(
-        "| scene | backend | one bounce: max | 99.9 % | full paths: max | 99.9 % | means: ratio | p | pixels: p |\n\
-         |---|---|---|---|---|---|---|---|---|\n",
-    );
+    let mut table = Table::new([
+        "scene",
+        "backend",
+        "one bounce: max",
+        "99.9 %",
+        "full paths: max",
+        "99.9 %",
+        "means: ratio",
+        "p",
+        "pixels: p",
+    ]);
     let mut ps = Vec::new();
     for name in SCENES {
         eprintln!("kernel against reference: {name}");
@@ -62,18 +70,17 @@ pub fn measure(bench: &Workbench, texts: &mut Texts) -> Result<(), Box<dyn Error
             let p_mean = two_sided((a.mean - b.mean) / a.error.hypot(b.error).max(1e-7 * b.mean));
             let p_pixels = compare(&long, &long_reference);
             ps.extend([p_mean, p_pixels]);
-            table += &format!(
-                "| {name} | {backend} | {:.1e} | {:.1e} | {:.1e} | {:.1e} | {:.5} | {p_mean:.2} | {p_pixels:.2} |\n",
-                one[0],
-                one[1],
-                full[0],
-                full[1],
-                a.mean / b.mean,
-            );
+            let mut cells = vec![name.to_owned(), backend.to_string()];
+            for differences in [one, full] {
+                cells.extend([differences.largest, differences.percentile].map(|d| format!("{d:.1e}")));
+            }
+            cells.push(format!("{:.5}", a.mean / b.mean));
+            cells.extend([p_mean, p_pixels].map(|p| format!("{p:.2}")));
+            table.rows.push(cells);
         }
     }
     let smallest = ps.iter().copied().fold(1.0, f64::min);
-    texts.insert("kernel", table);
+    texts.insert("kernel", table.markdown());
     let among = sidak(smallest, ps.len());
     texts.insert(
         "kernel-verdict",
@@ -85,10 +92,17 @@ pub fn measure(bench: &Workbench, texts: &mut Texts) -> Result<(), Box<dyn Error
     Ok(())
 }
 
-/// Largest and 99.9th-percentile difference of a pixel's channel, relative to the mean of the picture.
-fn differences(a: &Image, b: &Image) -> [f64; 2] {
+/// How far the channels of two pictures' pixels are apart, relative to the mean of the picture.
+struct Differences {
+    largest: f64,
+    /// The 99.9th percentile.
+    percentile: f64,
+}
+
+fn differences(a: &Image, b: &Image) -> Differences {
     let mut all: Vec<f64> = a.mean.iter().flatten().zip(b.mean.iter().flatten()).map(|(a, b)| (a - b).abs()).collect();
     all.sort_by(f64::total_cmp);
     let last = all.len() - 1;
-    [all[last], all[last - all.len() / 1000]].map(|d| d / total(b).mean)
+    let mean = total(b).mean;
+    Differences { largest: all[last] / mean, percentile: all[last - all.len() / 1000] / mean }
 }

@@ -1,8 +1,10 @@
-//! A run held against an earlier one: ratios, and which of them are more than noise.
+//! A run compared with an earlier one: ratios, and which of them are more than noise.
 
-use super::report::{Machine, Record, Run};
-use super::words::{number, with_spread};
-use super::{Better, Figure, Report};
+use super::figure::{Better, Figure};
+use super::figure_name::FigureName;
+use super::record::{Machine, Record, Run, SceneRecord};
+use super::report::Report;
+use crate::report::words::number;
 use luminaire::{Error, Result};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -31,7 +33,7 @@ pub enum Verdict {
     Better,
     /// The difference is within the noise.
     Same,
-    /// There are too few rounds to tell, or a value is not above zero.
+    /// There are too few rounds for a verdict, or a value is not above zero.
     Unknown,
 }
 
@@ -116,9 +118,7 @@ impl Baseline {
         check("the effort", format!("{:?}", self.run.effort), format!("{:?}", report.run.effort), other);
         for scene in &report.run.scenes {
             if let Some(before) = self.run.scenes.iter().find(|before| before.name == scene.name) {
-                let words = |s: &super::report::SceneRecord| {
-                    format!("{} triangles in {} x {} pixels", s.triangles, s.width, s.height)
-                };
+                let words = |s: &SceneRecord| format!("{} triangles in {} x {} pixels", s.triangles, s.width, s.height);
                 check(&scene.name, words(before), words(scene), other);
             }
         }
@@ -143,16 +143,15 @@ impl Baseline {
     /// What differs by more than the noise as rows of a table under a heading, the worst first.
     pub fn rows(changes: &[Change]) -> Vec<Vec<String>> {
         let mut rows = vec![["verdict", "figure", "before", "now", "unit", "ratio"].map(String::from).to_vec()];
-        let mut told: Vec<&Change> =
+        let mut differing: Vec<&Change> =
             changes.iter().filter(|c| matches!(c.verdict, Verdict::Worse | Verdict::Better)).collect();
-        told.sort_by(|a, b| a.verdict.cmp(&b.verdict).then(b.ratio().ln().abs().total_cmp(&a.ratio().ln().abs())));
-        rows.extend(told.into_iter().map(|change| {
-            let range = |figure: &Figure| with_spread([figure.median, figure.least, figure.most]);
+        differing.sort_by(|a, b| a.verdict.cmp(&b.verdict).then(b.ratio().ln().abs().total_cmp(&a.ratio().ln().abs())));
+        rows.extend(differing.into_iter().map(|change| {
             vec![
                 if change.verdict == Verdict::Worse { "WORSE" } else { "better" }.into(),
                 change.now.name.clone(),
-                range(&change.before),
-                range(&change.now),
+                change.before.spread().to_string(),
+                change.now.spread().to_string(),
                 change.now.unit.clone(),
                 number(change.ratio()),
             ]
@@ -164,7 +163,7 @@ impl Baseline {
     pub fn summary(changes: &[Change]) -> Vec<Vec<String>> {
         let mut kinds: BTreeMap<(&str, &str), Vec<&Change>> = BTreeMap::new();
         for change in changes {
-            let (section, quantity) = (first_part(&change.now.name), last_part(&change.now.name));
+            let FigureName { section, quantity, .. } = FigureName::parse(&change.now.name);
             kinds.entry((section, quantity)).or_default().push(change);
         }
         let head =
@@ -187,16 +186,6 @@ impl Baseline {
         }
         rows
     }
-}
-
-/// The section that a figure is of.
-pub(super) fn first_part(name: &str) -> &str {
-    name.split('/').next().unwrap_or(name)
-}
-
-/// What is measured.
-pub(super) fn last_part(name: &str) -> &str {
-    name.rsplit('/').next().unwrap_or(name)
 }
 
 #[cfg(test)]
@@ -236,7 +225,7 @@ mod tests {
         assert_eq!(verdict(Lower, &[-1.0; 3], &[-1.0; 3]), Verdict::Same);
     }
 
-    /// Times of one distribution are hardly ever told apart, whatever its width.
+    /// Two runs whose times have one distribution hardly ever differ by more than the noise, whatever its width.
     #[test]
     fn noise_is_hardly_ever_a_regression() {
         const RUNS: u32 = 40_000;

@@ -1,6 +1,6 @@
 //! From how many rays on a structure that takes longer to build, and is faster to trace, is worth it.
 
-use super::words::number;
+use crate::report::words::number;
 
 /// What an intersector takes: to build, and by the ray.
 #[derive(Debug, Clone, Copy, PartialEq)]

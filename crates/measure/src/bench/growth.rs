@@ -1,13 +1,19 @@
 //! How the cost of a sample and of a ray grows with luminaires, resolution and bounces, in the whole path tracer. How it grows with triangles
 //! and instances is in [`super::ray_section`].
 
+use super::definition::{Definition, Progress};
+use super::effort::Effort;
+use super::figure::{Better, Figure};
+use super::figure_name::FigureName;
 use super::meshes::{lamps, short};
-use super::ray_section::{columns, fit, with_exponents};
+use super::power_law::{fit, with_exponents};
 use super::rounds::Rounds;
-use super::words::number;
-use super::{Better, Definition, Effort, Figure, Section, Settings, Table, Tell};
+use super::section::Section;
+use super::settings::Settings;
 use crate::Workbench;
 use crate::chart::{Axis, Chart, Series};
+use crate::report::table::Table;
+use crate::report::words::number;
 use luminaire::Result;
 use luminaire::backend::Backend;
 use luminaire::film::{Batch, Tile};
@@ -133,9 +139,9 @@ pub(super) const DEFINITION: Definition = Definition {
     name: "growth",
     title: "How the cost grows with luminaires, resolution and bounces",
     scenes: false,
-    run: |bench, settings, tell| {
+    run: |bench, settings, progress| {
         let plan = Plan::new(bench, settings);
-        Ok(section(&plan, &measure(bench, &plan, tell)?))
+        Ok(section(&plan, &measure(bench, &plan, progress)?))
     },
 };
 
@@ -156,7 +162,7 @@ const LUMINAIRES: u64 = 10;
 ///
 /// # Errors
 /// If the driver fails.
-pub fn measure(bench: &Workbench, plan: &Plan, progress: Tell) -> Result<Vec<Cost>> {
+pub fn measure(bench: &Workbench, plan: &Plan, progress: Progress) -> Result<Vec<Cost>> {
     let mut points: Vec<(Quantity, f64, String, Scene)> = Vec::new();
     for &n in &plan.luminaires {
         points.push((Quantity::Luminaires, n as f64, short(n), scene(n, plan.side, BOUNCES)));
@@ -212,7 +218,7 @@ struct Once {
 }
 
 impl Picture {
-    /// With so many samples a pixel that it takes the plan's seconds.
+    /// With as many samples a pixel as take the plan's seconds.
     fn calibrated(tracer: Box<dyn Tracer>, side: u32, plan: &Plan) -> Result<Self> {
         let least = plan.group * PARTS;
         let mut picture = Picture { tracer, side, samples: least, group: plan.group };
@@ -308,15 +314,15 @@ pub fn section(plan: &Plan, costs: &[Cost]) -> Section {
         vec![
             format!("{} {}", cost.quantity.name(), cost.at),
             cost.backend.to_string(),
-            cost.sample.words(),
+            cost.sample.spread().to_string(),
             number(cost.rays_a_sample),
-            cost.rate().words(),
+            cost.rate().spread().to_string(),
         ]
     };
     let names = ["scene", "backend", "microseconds a sample", "rays a sample", "Mrays/s"];
-    let tables = vec![Table { columns: columns(&names), rows: costs.iter().map(row).collect() }];
+    let tables = vec![Table::new(names).with_rows(costs.iter().map(row))];
     Section {
-        name: "growth",
+        name: DEFINITION.name,
         title: "How the cost of the path tracer grows".into(),
         text,
         tables,
@@ -325,10 +331,10 @@ pub fn section(plan: &Plan, costs: &[Cost]) -> Section {
     }
 }
 
-fn figures(cost: &Cost) -> [Figure; 2] {
-    let name = |what: &str| format!("growth/{}-{}/{}/{what}", cost.quantity.name(), cost.at, cost.backend);
-    [
-        cost.sample.figure(name("sample"), "us", Better::Lower),
-        cost.rate().figure(name("rays"), "Mrays/s", Better::Higher),
-    ]
+fn figures(cost: &Cost) -> Vec<Figure> {
+    let of = format!("{}-{}/{}", cost.quantity.name(), cost.at, cost.backend);
+    let name = |quantity: &str| FigureName { section: DEFINITION.name, of: &of, quantity }.to_string();
+    let sample = Figure::of(name("sample"), "us", Better::Lower, &cost.sample.0);
+    let rays = Figure::of(name("rays"), "Mrays/s", Better::Higher, &cost.rate().0);
+    [sample, rays].into_iter().flatten().collect()
 }

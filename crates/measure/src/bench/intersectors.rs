@@ -1,9 +1,11 @@
 //! Ray query, compute BVH and reference on the same rays, by the kind of the rays and the size of the room.
 
+use super::definition::Progress;
+use super::effort::Effort;
 use super::meshes::{self, Room};
 use super::ray_kinds::{Kind, RaySet, reference_result};
 use super::rounds::Rounds;
-use super::{Effort, Settings, Tell};
+use super::settings::Settings;
 use crate::Workbench;
 use crate::rays::Ray;
 use glam::Vec3;
@@ -105,19 +107,19 @@ impl Measured {
     }
 }
 
-/// The reference is timed on so many of the rays at most.
+/// Most rays on which the reference is timed.
 const REFERENCE_RAYS: usize = 1 << 16;
 /// How often a room is built, unless that takes longer than [`LONG_BUILD`] seconds.
 const BUILDS: usize = 3;
 const LONG_BUILD: f64 = 1.0;
-/// Of so many rays one may meet something else than the reference says: rounding decides at edges.
+/// One ray in this number may meet something else than the reference says, because rounding decides at edges; more are an error.
 const ONE_IN: usize = 1000;
 
 /// Measures every room of a plan.
 ///
 /// # Errors
 /// If the driver fails, or an intersector does not find what the reference finds. A room that is too large for a device is only left out.
-pub fn measure(bench: &Workbench, plan: &Plan, progress: Tell) -> Result<Vec<Measured>> {
+pub fn measure(bench: &Workbench, plan: &Plan, progress: Progress) -> Result<Vec<Measured>> {
     let mut all = Vec::new();
     // The first build of a driver compiles its own kernels.
     let first = meshes::one_mesh(1000);
@@ -288,7 +290,7 @@ fn agree(found: f64, expected: f64) -> bool {
     found == expected || expected.is_finite() && (found - expected).abs() <= 1e-4 * (1.0 + expected)
 }
 
-/// How often the rays of each kind are to be traced so that it takes so many seconds; everything has run once before.
+/// How often the rays of each kind have to be traced to take `seconds`; everything has run once before.
 fn calibrate(tracer: &RayTracer, rays: usize, seconds: f64) -> Result<[u32; 4]> {
     let mut repeats = [1; 4];
     for (k, kind) in Kind::ALL.into_iter().enumerate() {

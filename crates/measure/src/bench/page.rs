@@ -1,8 +1,13 @@
 //! A run as a page: HTML that needs nothing else, and Markdown for a repository.
 
-use super::words::bytes;
-use super::{Report, Section, Table};
+use super::definition::Outcome;
+use super::report::Report;
+use super::section::Section;
 use crate::chart::Chart;
+use crate::report::html::{escaped, marked};
+use crate::report::markdown::image;
+use crate::report::table::Table;
+use crate::report::words::bytes;
 
 /// Light and dark after the reader's system; the charts stay on white.
 const STYLE: &str = "\
@@ -63,9 +68,8 @@ pub fn html(report: &Report) -> String {
         .map(|(name, value)| format!("<dt>{name}</dt><dd>{}</dd>\n", marked(value)))
         .collect::<String>();
     page += "</dl>\n<ul>\n";
-    let link = |(section, _): &super::Outcome| {
-        format!("<li><a href=\"#{}\">{}</a></li>\n", section.name, escaped(section.title))
-    };
+    let link =
+        |(section, _): &Outcome| format!("<li><a href=\"#{}\">{}</a></li>\n", section.name, escaped(section.title));
     page += &report.outcomes.iter().map(link).collect::<String>();
     page += "</ul>\n";
     for (definition, outcome) in &report.outcomes {
@@ -87,10 +91,10 @@ fn section_html(section: &Section) -> String {
         let charts: String = section.charts.iter().map(inline).collect();
         text += &format!("<div class=\"charts\">\n{charts}</div>\n");
     }
-    text + &section.tables.iter().map(table_html).collect::<String>()
+    text + &section.tables.iter().map(Table::html).collect::<String>()
 }
 
-/// A chart as a part of a document. The namespace is told by the document.
+/// A chart as a part of a document, whose namespace is the document's.
 fn inline(chart: &Chart) -> String {
     let svg = chart.svg().replace(" xmlns=\"http://www.w3.org/2000/svg\"", "");
     svg.replacen("<svg ", &format!("<svg role=\"img\" aria-label=\"{}\" ", escaped(&chart.title)), 1)
@@ -99,29 +103,7 @@ fn inline(chart: &Chart) -> String {
         + "\n"
 }
 
-fn table_html(table: &Table) -> String {
-    let row = |cells: &[String], tag: &str| -> String {
-        let cells: String = cells.iter().map(|cell| format!("<{tag}>{}</{tag}>", escaped(cell))).collect();
-        format!("<tr>{cells}</tr>\n")
-    };
-    let rows: String = table.rows.iter().map(|cells| row(cells, "td")).collect();
-    format!(
-        "<div class=\"table\"><table>\n<thead>{}</thead>\n<tbody>\n{rows}</tbody></table></div>\n",
-        row(&table.columns, "th")
-    )
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
-}
-
-/// The same, and what is between backticks as code.
-fn marked(text: &str) -> String {
-    let parts = text.split('`').enumerate();
-    parts.map(|(i, part)| if i % 2 == 1 { format!("<code>{}</code>", escaped(part)) } else { escaped(part) }).collect()
-}
-
-/// The same as Markdown, with the charts as files in `folder`, seen from the page and without a slash at its end.
+/// The page as Markdown, with the charts as files in `folder`, seen from the page and without a slash at its end.
 pub fn markdown(report: &Report, folder: &str) -> String {
     let mut page = format!("# Benchmark\n\n{}\n\n", INTRODUCTION.join("\n\n"));
     page += &head(report).iter().map(|(name, value)| format!("- {name}: {value}\n")).collect::<String>();
@@ -137,10 +119,9 @@ pub fn markdown(report: &Report, folder: &str) -> String {
         };
         page += &section.text.iter().map(|text| format!("{text}\n\n")).collect::<String>();
         for chart in &section.charts {
-            let words = chart.title.replace(['[', ']'], "");
-            page += &format!("![{words}](<{folder}/{}>)\n\n", file_name(section, chart));
+            page += &image(&chart.title, folder, &file_name(section, chart));
         }
-        let tables: Vec<String> = section.tables.iter().map(table_markdown).collect();
+        let tables: Vec<String> = section.tables.iter().map(Table::markdown).collect();
         page += &tables.join("\n");
     }
     page
@@ -149,13 +130,4 @@ pub fn markdown(report: &Report, folder: &str) -> String {
 /// The file of a chart.
 pub fn file_name(section: &Section, chart: &Chart) -> String {
     format!("{}-{}.svg", section.name, chart.name)
-}
-
-fn table_markdown(table: &Table) -> String {
-    let line = |cells: &[String]| {
-        let cells: Vec<_> = cells.iter().map(|cell| cell.replace('|', "\\|")).collect();
-        format!("| {} |\n", cells.join(" | "))
-    };
-    let rows: String = table.rows.iter().map(|row| line(row)).collect();
-    format!("{}|{}\n{rows}", line(&table.columns), "---|".repeat(table.columns.len()))
 }

@@ -3,18 +3,31 @@
 /// By what part an error has to be smaller to be worth a higher cost: less is noise, or the rounding of another backend.
 pub(super) const LEAST_GAIN: f64 = 0.05;
 
-/// The Pareto front of points of a cost and an error: the numbers of those for which no other point is at most as dear and as exact, in
-/// ascending order of the cost. An error counts as smaller if it is 5 % smaller. Points whose error is not above zero, or not finite, are no
-/// measurement and never on the front.
-pub fn front(points: &[(f64, f64)]) -> Vec<usize> {
-    let sound = |&i: &usize| points[i].0.is_finite() && points[i].1.is_finite() && points[i].1 > 0.0;
-    let mut order: Vec<usize> = (0..points.len()).filter(sound).collect();
-    order.sort_by(|&a, &b| points[a].0.total_cmp(&points[b].0).then(points[a].1.total_cmp(&points[b].1)));
+/// A render that may be on the front.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Candidate {
+    /// What it costs: seconds.
+    pub cost: f64,
+    /// How far off it is: relMSE.
+    pub error: f64,
+}
+
+/// The Pareto front: the indices of those candidates that no other one equals or surpasses in both cost and error, in ascending order of the
+/// cost. An error counts as smaller if it is 5 % smaller. A candidate whose error is not above zero, or not finite, is no measurement and
+/// never on the front.
+pub fn front(candidates: &[Candidate]) -> Vec<usize> {
+    let sound = |&i: &usize| {
+        let Candidate { cost, error } = candidates[i];
+        cost.is_finite() && error.is_finite() && error > 0.0
+    };
+    let mut order: Vec<usize> = (0..candidates.len()).filter(sound).collect();
+    let by_cost = |a: &Candidate, b: &Candidate| a.cost.total_cmp(&b.cost).then(a.error.total_cmp(&b.error));
+    order.sort_by(|&a, &b| by_cost(&candidates[a], &candidates[b]));
     let mut best = f64::INFINITY;
     order.retain(|&i| {
-        let better = points[i].1 < (1.0 - LEAST_GAIN) * best;
+        let better = candidates[i].error < (1.0 - LEAST_GAIN) * best;
         if better {
-            best = points[i].1;
+            best = candidates[i].error;
         }
         better
     });
@@ -27,6 +40,8 @@ mod tests {
 
     #[test]
     fn nothing_beats_the_front_and_something_beats_the_rest() {
+        let candidate = |(cost, error): (f64, f64)| Candidate { cost, error };
+        let front = |points: &[(f64, f64)]| front(&points.iter().copied().map(candidate).collect::<Vec<_>>());
         let points = [
             (4.0, 1.0),
             (1.0, 10.0),

@@ -1,5 +1,7 @@
 //! How fast something grows.
 
+use crate::chart::{Point, Series};
+
 /// `y = factor * x^exponent`, fitted by least squares to the logarithms.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PowerLaw {
@@ -41,4 +43,18 @@ impl std::fmt::Display for PowerLaw {
             None => Ok(()),
         }
     }
+}
+
+/// The names of lines with the exponents of the power laws through their points.
+pub(super) fn with_exponents(series: Vec<Series>) -> Vec<Series> {
+    let named = |series: Series| match fit(&series.points) {
+        Some(law) => Series { name: format!("{}: exponent {law}", series.name), ..series },
+        None => series,
+    };
+    series.into_iter().map(named).collect()
+}
+
+/// The power law through the points of a line.
+pub(super) fn fit(points: &[Point]) -> Option<PowerLaw> {
+    PowerLaw::fit(points.iter().map(|p| (p.x, p.y)))
 }

@@ -1,9 +1,15 @@
 //! What comes before the first sample: loading a scene, building its structures, and the memory that they take.
 
-use super::trial::ready;
-use super::words::{bytes, with_spread};
-use super::{Better, Definition, Figure, Section, Settings, Table, Tell, spread};
+use super::definition::{Definition, Progress};
+use super::figure::{Better, Figure};
+use super::figure_name::FigureName;
+use super::renders::Preparation;
+use super::rounds::Rounds;
+use super::section::Section;
+use super::settings::Settings;
 use crate::Workbench;
+use crate::report::table::Table;
+use crate::report::words::bytes;
 use luminaire::{Result, scene};
 use std::time::Instant;
 
@@ -11,7 +17,18 @@ use std::time::Instant;
 pub(super) const DEFINITION: Definition =
     Definition { name: "preparation", title: "Loading, building and memory", scenes: true, run };
 
-fn run(bench: &Workbench, settings: &Settings, tell: Tell) -> Result<Section> {
+/// What a backend took, round by round.
+#[derive(Debug, Clone, Default)]
+struct BackendRounds {
+    /// Seconds to build the tracer.
+    build: Rounds,
+    /// Seconds from then to the first samples.
+    first_samples: Rounds,
+    /// Bytes that the tracer holds; no round for the CPU.
+    device_bytes: Rounds,
+}
+
+fn run(bench: &Workbench, settings: &Settings, progress: Progress) -> Result<Section> {
     let columns = [
         "scene",
         "triangles",
@@ -24,40 +41,43 @@ fn run(bench: &Workbench, settings: &Settings, tell: Tell) -> Result<Section> {
     ];
     let (mut rows, mut figures) = (Vec::new(), Vec::new());
     for (number, of) in settings.scenes.iter().enumerate() {
-        tell(&format!("{}/{} {}", number + 1, settings.scenes.len(), of.name));
-        let mut load = Vec::new();
-        let mut builds = vec![(Vec::new(), Vec::new(), Vec::new()); settings.backends.len()];
+        progress(&format!("{}/{} {}", number + 1, settings.scenes.len(), of.name));
+        let mut load = Rounds::default();
+        let mut rounds = vec![BackendRounds::default(); settings.backends.len()];
         for round in 0..=settings.rounds {
             // The first round compiles shaders and fills caches.
             let counts = round > 0;
             let start = Instant::now();
             scene::load(&of.path)?;
-            load.extend(counts.then(|| start.elapsed().as_secs_f64()));
-            for (backend, (build, first, memory)) in settings.backends.iter().zip(&mut builds) {
-                let (built, ready, taken) = ready(bench, &of.scene, *backend)?;
+            load.0.extend(counts.then(|| start.elapsed().as_secs_f64()));
+            for (backend, rounds) in settings.backends.iter().zip(&mut rounds) {
+                let taken = Preparation::measure(bench, &of.scene, *backend)?;
                 if counts {
-                    build.push(built);
-                    first.push(ready - built);
-                    memory.extend(taken.map(|bytes| bytes as f64));
+                    rounds.build.0.push(taken.build_seconds);
+                    rounds.first_samples.0.push(taken.ready_seconds - taken.build_seconds);
+                    rounds.device_bytes.0.extend(taken.device_bytes.map(|bytes| bytes as f64));
                 }
             }
         }
-        let name = |part: &str| format!("{}/{}/{part}", DEFINITION.name, of.name);
-        figures.extend(Figure::of(name("load-seconds"), "s", Better::Lower, &load));
-        for (backend, (build, first, memory)) in settings.backends.iter().zip(&builds) {
+        let mut add = |of: &str, quantity: &str, unit: &str, rounds: &Rounds| {
+            let name = FigureName { section: DEFINITION.name, of, quantity };
+            figures.extend(Figure::of(name.to_string(), unit, Better::Lower, &rounds.0));
+        };
+        add(&of.name, "load-seconds", "s", &load);
+        for (backend, BackendRounds { build, first_samples, device_bytes }) in settings.backends.iter().zip(&rounds) {
             rows.push(vec![
                 of.name.clone(),
                 of.scene.triangle_count().to_string(),
                 of.scene.objects.len().to_string(),
-                with_spread(spread(&load)),
+                load.spread().to_string(),
                 backend.to_string(),
-                with_spread(spread(build)),
-                with_spread(spread(first)),
-                if memory.is_empty() { "-".into() } else { bytes(spread(memory)[0]) },
+                build.spread().to_string(),
+                first_samples.spread().to_string(),
+                if device_bytes.0.is_empty() { "-".into() } else { bytes(device_bytes.median()) },
             ]);
-            let name = |part: &str| name(&format!("{backend}/{part}"));
-            figures.extend(Figure::of(name("build-seconds"), "s", Better::Lower, build));
-            figures.extend(Figure::of(name("device-bytes"), "bytes", Better::Lower, memory));
+            let of = format!("{}/{backend}", of.name);
+            add(&of, "build-seconds", "s", build);
+            add(&of, "device-bytes", "bytes", device_bytes);
         }
     }
     let text = format!(
@@ -71,7 +91,7 @@ fn run(bench: &Workbench, settings: &Settings, tell: Tell) -> Result<Section> {
         name: DEFINITION.name,
         title: DEFINITION.title.into(),
         text: vec![text],
-        tables: vec![Table { columns: columns.map(String::from).to_vec(), rows }],
+        tables: vec![Table::new(columns).with_rows(rows)],
         charts: vec![],
         figures,
     })

@@ -1,13 +1,17 @@
 //! What the intersectors did, as tables, charts and sentences.
 
 use super::break_even::{BreakEven, Cost};
+use super::definition::Definition;
+use super::figure::{Better, Figure};
+use super::figure_name::FigureName;
 use super::intersectors::{Family, Intersector, Measured, Plan, measure};
-use super::power_law::PowerLaw;
+use super::power_law::with_exponents;
 use super::ray_kinds::Kind;
 use super::rounds::Rounds;
-use super::words::number;
-use super::{Better, Definition, Figure, Section, Table};
-use crate::chart::{Axis, Chart, Point, Series};
+use super::section::Section;
+use crate::chart::{Axis, Chart, Series};
+use crate::report::table::Table;
+use crate::report::words::{capital, number};
 use luminaire::backend::Backend;
 
 /// The section about rays alone: ray query against compute BVH by the kind of the rays and the size of the room, with the reference beside them.
@@ -15,9 +19,9 @@ pub(super) const DEFINITION: Definition = Definition {
     name: "rays",
     title: "Rays alone: ray query against compute BVH",
     scenes: false,
-    run: |bench, settings, tell| {
+    run: |bench, settings, progress| {
         let plan = Plan::new(bench, settings);
-        Ok(section(&plan, &measure(bench, &plan, tell)?))
+        Ok(section(&plan, &measure(bench, &plan, progress)?))
     },
 };
 
@@ -34,8 +38,8 @@ pub fn section(plan: &Plan, rooms: &[Measured]) -> Section {
     text.extend(findings(rooms));
     let tables = vec![rate_table(rooms), build_table(rooms), break_even_table(rooms)];
     Section {
-        name: "rays",
-        title: "Rays alone: ray query against compute BVH".into(),
+        name: DEFINITION.name,
+        title: DEFINITION.title.into(),
         text,
         tables: tables.into_iter().filter(|table| !table.rows.is_empty()).collect(),
         charts,
@@ -200,42 +204,20 @@ fn family_charts(plan: &Plan, family: Family, rooms: &[&Measured]) -> Vec<Chart>
     charts
 }
 
-/// The names of lines with the exponents of the power laws through their points.
-pub(super) fn with_exponents(series: Vec<Series>) -> Vec<Series> {
-    let named = |series: Series| match fit(&series.points) {
-        Some(law) => Series { name: format!("{}: exponent {law}", series.name), ..series },
-        None => series,
-    };
-    series.into_iter().map(named).collect()
-}
-
-pub(super) fn fit(points: &[Point]) -> Option<PowerLaw> {
-    PowerLaw::fit(points.iter().map(|p| (p.x, p.y)))
-}
-
-fn capital(words: &str) -> String {
-    let mut letters = words.chars();
-    letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
-}
-
 /// Every intersector of every room.
 fn everyone(rooms: &[Measured]) -> impl Iterator<Item = (&Measured, &Intersector)> {
     rooms.iter().flat_map(|room| room.intersectors.iter().map(move |i| (room, i)))
 }
 
-pub(super) fn columns(names: &[&str]) -> Vec<String> {
-    names.iter().map(|name| name.to_string()).collect()
-}
-
 fn rate_table(rooms: &[Measured]) -> Table {
     let row = |(room, i): (&Measured, &Intersector)| {
         let mut row = vec![room.room.clone(), room.count.to_string(), i.backend.to_string()];
-        row.extend(i.rates.iter().map(Rounds::words));
+        row.extend(i.rates.iter().map(|rate| rate.spread().to_string()));
         row
     };
-    let mut names = columns(&["room", "triangles or instances", "intersector"]);
-    names.extend(Kind::ALL.iter().map(|kind| format!("{}, Mrays/s", kind.words())));
-    Table { columns: names, rows: everyone(rooms).map(row).collect() }
+    let mut columns = ["room", "triangles or instances", "intersector"].map(String::from).to_vec();
+    columns.extend(Kind::ALL.iter().map(|kind| format!("{}, Mrays/s", kind.words())));
+    Table::new(columns).with_rows(everyone(rooms).map(row))
 }
 
 fn build_table(rooms: &[Measured]) -> Table {
@@ -249,13 +231,13 @@ fn build_table(rooms: &[Measured]) -> Table {
         vec![
             room.room.clone(),
             i.backend.to_string(),
-            i.build.words(),
+            i.build.spread().to_string(),
             host,
             bytes(f64::from(1 << 20)),
             bytes(room.count as f64),
         ]
     };
-    let names = [
+    let columns = [
         "room",
         "intersector",
         "build, s",
@@ -263,7 +245,7 @@ fn build_table(rooms: &[Measured]) -> Table {
         "device memory, MiB",
         "bytes a triangle or instance",
     ];
-    Table { columns: columns(&names), rows: everyone(rooms).map(row).collect() }
+    Table::new(columns).with_rows(everyone(rooms).map(row))
 }
 
 /// Which of the two GPU intersectors is done first.
@@ -273,23 +255,26 @@ fn break_even_table(rooms: &[Measured]) -> Table {
         let verdicts: Option<Vec<String>> = (0..Kind::ALL.len()).map(verdict).collect();
         Some(std::iter::once(room.room.clone()).chain(verdicts?).collect())
     };
-    let mut names = columns(&["done first, building and tracing together"]);
-    names.extend(Kind::ALL.iter().map(|kind| format!("{} rays", kind.words())));
-    Table { columns: names, rows: rooms.iter().filter_map(row).collect() }
+    let mut columns = vec!["done first, building and tracing together".to_owned()];
+    columns.extend(Kind::ALL.iter().map(|kind| format!("{} rays", kind.words())));
+    Table::new(columns).with_rows(rooms.iter().filter_map(row))
 }
 
 fn figures(room: &Measured) -> Vec<Figure> {
     let mut figures = Vec::new();
     for i in &room.intersectors {
-        let name = |what: &str| format!("rays/{}/{}/{what}", room.room, i.backend);
+        let of = format!("{}/{}", room.room, i.backend);
+        let mut add = |quantity: &str, unit: &str, better: Better, values: &[f64]| {
+            let name = FigureName { section: DEFINITION.name, of: &of, quantity };
+            figures.extend(Figure::of(name.to_string(), unit, better, values));
+        };
         for (kind, rate) in Kind::ALL.into_iter().zip(&i.rates) {
-            figures.push(rate.figure(name(kind.name()), "Mrays/s", Better::Higher));
+            add(kind.name(), "Mrays/s", Better::Higher, &rate.0);
         }
-        figures.push(i.build.figure(name("build"), "s", Better::Lower));
+        add("build", "s", Better::Lower, &i.build.0);
         if let Some(bytes) = i.bytes {
-            let each = Rounds(vec![bytes as f64 / room.count as f64]);
             let thing = if room.family == Family::Triangles { "triangle" } else { "instance" };
-            figures.push(each.figure(name(&format!("bytes-per-{thing}")), "bytes", Better::Lower));
+            add(&format!("bytes-per-{thing}"), "bytes", Better::Lower, &[bytes as f64 / room.count as f64]);
         }
     }
     figures

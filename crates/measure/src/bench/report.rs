@@ -1,77 +1,13 @@
 //! A run of the benchmark: where it ran, what it found, as JSON and as CSV.
 
-use super::baseline::{first_part, last_part};
-use super::{Definition, Effort, Figure, Section, Settings};
-use crate::Workbench;
+use super::definition::Outcome;
+use super::figure::Figure;
+use super::figure_name::FigureName;
+use super::record::{Machine, Run};
+use super::section::Section;
+use super::settings::Settings;
 use crate::chart::CSV_HEADER;
-use luminaire::Result;
-use serde::{Deserialize, Serialize};
-
-/// A part with what became of it.
-pub type Outcome = (Definition, Result<Section>);
-
-/// Where a run took place.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Machine {
-    /// The Vulkan device and its driver, or what is missing.
-    pub device: String,
-    /// The processor's name, as far as the system tells it.
-    pub processor: String,
-    /// How many threads the program uses on it.
-    pub threads: usize,
-    /// The backends that ran.
-    pub backends: Vec<String>,
-    /// The version of luminaire.
-    pub version: String,
-}
-
-impl Machine {
-    /// This machine.
-    pub fn new(bench: &Workbench, settings: &Settings) -> Self {
-        Machine {
-            device: bench.device.clone(),
-            processor: processor(),
-            threads: rayon::current_num_threads(),
-            backends: settings.backends.iter().map(ToString::to_string).collect(),
-            version: env!("CARGO_PKG_VERSION").into(),
-        }
-    }
-}
-
-/// The processor's name; Linux alone tells it without more ado.
-fn processor() -> String {
-    let about = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let name =
-        about.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':').map(|(_, name)| name.trim()));
-    name.map_or_else(|| std::env::consts::ARCH.into(), String::from)
-}
-
-/// The most memory that this process has held, in bytes; Linux alone tells it.
-fn peak_bytes() -> Option<u64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
-    Some(1024 * peak.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?)
-}
-
-/// A scene as a record has it.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) struct SceneRecord {
-    pub name: String,
-    pub triangles: u64,
-    pub width: u32,
-    pub height: u32,
-}
-
-/// What was run.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(super) struct Run {
-    pub command: String,
-    pub effort: Effort,
-    pub rounds: usize,
-    pub budget_seconds: f64,
-    pub estimators: Vec<String>,
-    pub scenes: Vec<SceneRecord>,
-}
+use serde::Serialize;
 
 /// A run with all that it found.
 #[derive(Debug)]
@@ -81,44 +17,14 @@ pub struct Report {
     pub machine: Machine,
     /// What it found.
     pub outcomes: Vec<Outcome>,
-    /// The most memory that the process has held, in bytes, where the system tells.
+    /// The most memory that the process has held, in bytes, where the system has it.
     pub peak_bytes: Option<u64>,
-}
-
-/// What is read back of a run.
-#[derive(Debug, Deserialize)]
-pub(super) struct Record {
-    pub run: Run,
-    pub machine: Machine,
-    pub sections: Vec<SectionRecord>,
-}
-
-#[derive(Debug, Deserialize)]
-pub(super) struct SectionRecord {
-    pub figures: Vec<Figure>,
 }
 
 impl Report {
     /// Gathers a run. `command` makes it again.
-    pub fn new(command: String, settings: &Settings, machine: Machine, mut outcomes: Vec<Outcome>) -> Self {
-        for section in outcomes.iter_mut().filter_map(|(_, outcome)| outcome.as_mut().ok()) {
-            section.figures.retain(|f| [f.median, f.least, f.most].iter().all(|value| value.is_finite()));
-        }
-        let scenes = settings.scenes.iter().map(|of| SceneRecord {
-            name: of.name.clone(),
-            triangles: of.scene.triangle_count(),
-            width: of.scene.film.width,
-            height: of.scene.film.height,
-        });
-        let run = Run {
-            command,
-            effort: settings.effort,
-            rounds: settings.rounds,
-            budget_seconds: settings.effort.budget_seconds(),
-            estimators: settings.estimators.clone(),
-            scenes: scenes.collect(),
-        };
-        Report { run, machine, outcomes, peak_bytes: peak_bytes() }
+    pub fn new(command: String, settings: &Settings, machine: Machine, outcomes: Vec<Outcome>) -> Self {
+        Report { run: Run::new(command, settings), machine, outcomes, peak_bytes: peak_bytes() }
     }
 
     /// What was found, without what failed.
@@ -159,9 +65,7 @@ impl Report {
     pub fn figures_csv(&self) -> String {
         let mut rows = "section,of,quantity,unit,median,least,most,rounds\n".to_owned();
         for Figure { name, unit, median, least, most, rounds, .. } in self.figures() {
-            let (section, quantity) = (first_part(name), last_part(name));
-            let of =
-                name.strip_prefix(section).and_then(|rest| rest.strip_suffix(quantity)).unwrap_or("").trim_matches('/');
+            let FigureName { section, of, quantity } = FigureName::parse(name);
             rows += &format!("{section},{of},{quantity},{unit},{median:?},{least:?},{most:?},{rounds}\n");
         }
         rows
@@ -176,4 +80,11 @@ impl Report {
         }
         rows
     }
+}
+
+/// The most memory that this process has held, in bytes. Only Linux has it in a file.
+fn peak_bytes() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    Some(1024 * peak.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?)
 }

@@ -1,23 +1,21 @@
 //! One contender on one scene and backend: its renders, round by round.
 
-use super::contenders::Contender;
 use super::power_law::PowerLaw;
-use super::spread;
+use super::reference::Reference;
+use super::renders::{picture, render_samples, warm_up};
+use super::rounds::Rounds;
 use crate::{Workbench, metrics};
 use luminaire::Result;
 use luminaire::backend::Backend;
-use luminaire::film::{Batch, Tile};
-use luminaire::picture::Picture;
-use luminaire::render::{End, Limits, Rendered, Tracer, render};
+use luminaire::render::Progress;
 use luminaire::scene::Scene;
-use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-/// Every render takes so many times the samples of the one before.
+/// Samples of a render over those of the one before it.
 pub(super) const STEP: u32 = 4;
-/// Samples of the last render, however much time is left.
+/// Most samples of a render, however much time is left.
 const MOST_SAMPLES: u32 = 1 << 18;
-/// There are at least so many renders, however slow they are.
+/// Least number of renders, however slow they are.
 const LEAST_RUNGS: usize = 3;
 
 /// The renders at one number of samples, a value a round.
@@ -26,35 +24,63 @@ pub(super) struct Rung {
     /// Samples a pixel.
     pub spp: u32,
     /// Wall-clock seconds.
-    pub seconds: Vec<f64>,
+    pub seconds: Rounds,
     /// Seconds that the device was busy by its own clock; 0 where it has none.
-    pub device_seconds: Vec<f64>,
+    pub device_seconds: Rounds,
     /// relMSE against the reference, less the reference's own.
-    pub relmse: Vec<f64>,
-    /// Samples, rays and shadow rays of a round, in the mean.
-    pub counts: [f64; 3],
+    pub relmse: Rounds,
+    /// How much a round traced, in the mean.
+    pub counts: Counts,
 }
 
 impl Rung {
-    /// Mean over the rounds and its standard error; NaN where there is one round.
-    pub fn error(&self) -> (f64, f64) {
-        let estimate = crate::statistics::Estimate::new(self.relmse.iter().copied());
-        (estimate.mean, estimate.error)
-    }
-
-    /// Median of the seconds.
-    pub fn median_seconds(&self) -> f64 {
-        spread(&self.seconds)[0]
+    fn new(spp: u32) -> Self {
+        let empty = Rounds::default;
+        Rung { spp, seconds: empty(), device_seconds: empty(), relmse: empty(), counts: Counts::default() }
     }
 
     /// A quantity by the second in every round.
-    pub fn rates(&self, count: f64) -> Vec<f64> {
-        self.seconds.iter().map(|seconds| count / seconds).collect()
+    pub fn rates(&self, count: f64) -> Rounds {
+        self.seconds.map(|seconds| count / seconds)
     }
 
     /// relMSE times seconds in every round.
-    pub fn costs(&self) -> Vec<f64> {
-        self.relmse.iter().zip(&self.seconds).map(|(error, seconds)| error * seconds).collect()
+    pub fn costs(&self) -> Rounds {
+        self.relmse.times(&self.seconds)
+    }
+
+    /// Whether the device has a clock.
+    pub fn has_device_seconds(&self) -> bool {
+        self.device_seconds.0.iter().any(|seconds| *seconds > 0.0)
+    }
+}
+
+/// How much a render traced.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Counts {
+    pub samples: f64,
+    /// Rays of all kinds.
+    pub rays: f64,
+    pub shadow_rays: f64,
+}
+
+impl Counts {
+    /// Takes render number `n` into the mean.
+    fn add(&mut self, render: &Progress, n: f64) {
+        let Counts { samples, rays, shadow_rays } = self;
+        for (mean, count) in [(samples, render.samples), (rays, render.rays), (shadow_rays, render.shadow_rays)] {
+            *mean += (count as f64 - *mean) / n;
+        }
+    }
+
+    /// Rays that are no shadow rays, for one sample, without the one from the camera.
+    pub fn bounce_rays_a_sample(&self) -> f64 {
+        (self.rays - self.shadow_rays) / self.samples - 1.0
+    }
+
+    /// Shadow rays for one sample.
+    pub fn shadow_rays_a_sample(&self) -> f64 {
+        self.shadow_rays / self.samples
     }
 }
 
@@ -66,7 +92,7 @@ pub(super) struct Trial {
     /// Seconds from the scene to the first samples, the first time of all: shaders are compiled, unless the driver has kept them.
     pub first_ready_seconds: f64,
     /// The same later, round by round.
-    pub ready_seconds: Vec<f64>,
+    pub ready_seconds: Rounds,
     /// In ascending order of the samples.
     pub rungs: Vec<Rung>,
     /// Samples that were not finite.
@@ -79,7 +105,7 @@ impl Trial {
             estimator: estimator.into(),
             backend,
             first_ready_seconds: f64::NAN,
-            ready_seconds: Vec::new(),
+            ready_seconds: Rounds::default(),
             rungs: Vec::new(),
             dropped: 0,
         }
@@ -92,24 +118,19 @@ impl Trial {
 
     /// The exponent of relMSE over samples, fitted to the measured points; none for fewer than three.
     pub fn exponent(&self) -> Option<f64> {
-        let law = PowerLaw::fit(self.rungs.iter().map(|r| (f64::from(r.spp), r.error().0)))?;
+        let law = PowerLaw::fit(self.rungs.iter().map(|r| (f64::from(r.spp), r.relmse.estimate().mean)))?;
         law.error.map(|_| law.exponent)
     }
 
     /// Adds a round: the tracer is built anew with the scene's seed, used once, and then renders with more and more samples. The first round
     /// goes on while a longer render seems to fit into the seconds that are left; the others do the same renders.
-    pub fn round(
-        &mut self,
-        bench: &Workbench,
-        scene: &Scene,
-        (reference, own_error): (&Picture, f64),
-        budget: f64,
-    ) -> Result<()> {
+    pub fn round(&mut self, bench: &Workbench, scene: &Scene, reference: &Reference, budget: f64) -> Result<()> {
         let start = Instant::now();
         let mut tracer = bench.tracer(scene, self.backend)?;
         warm_up(tracer.as_mut(), scene)?;
-        self.ready_seconds.push(start.elapsed().as_secs_f64());
-        let first = self.ready_seconds.len() == 1;
+        self.ready_seconds.0.push(start.elapsed().as_secs_f64());
+        let first = self.ready_seconds.0.len() == 1;
+        let own_error = reference.own_error.unwrap_or(0.0);
         let (mut left, mut spp) = (budget, 1);
         for rung in 0.. {
             if !first && rung == self.rungs.len() {
@@ -118,23 +139,14 @@ impl Trial {
             let rendered = render_samples(tracer.as_mut(), scene, spp)?;
             let seconds = rendered.progress.seconds;
             if first {
-                self.rungs.push(Rung {
-                    spp,
-                    seconds: vec![],
-                    device_seconds: vec![],
-                    relmse: vec![],
-                    counts: [0.0; 3],
-                });
+                self.rungs.push(Rung::new(spp));
             }
-            let n = self.ready_seconds.len() as f64;
+            let n = self.ready_seconds.0.len() as f64;
             let here = &mut self.rungs[rung];
-            here.seconds.push(seconds);
-            here.device_seconds.push(rendered.device_seconds);
-            here.relmse.push(metrics::compare(&picture(&rendered), reference, 0)?.relmse - own_error);
-            let p = &rendered.progress;
-            for (mean, count) in here.counts.iter_mut().zip([p.samples, p.rays, p.shadow_rays]) {
-                *mean += (count as f64 - *mean) / n;
-            }
+            here.seconds.0.push(seconds);
+            here.device_seconds.0.push(rendered.device_seconds);
+            here.relmse.0.push(metrics::compare(&picture(&rendered), &reference.picture, 0)?.relmse - own_error);
+            here.counts.add(&rendered.progress, n);
             self.dropped += rendered.dropped;
             left -= seconds;
             let fits = f64::from(STEP) * seconds <= left && spp < MOST_SAMPLES;
@@ -144,105 +156,5 @@ impl Trial {
             spp *= STEP;
         }
         Ok(())
-    }
-}
-
-/// The first samples of a tracer, which may compile shaders.
-fn warm_up(tracer: &mut dyn Tracer, scene: &Scene) -> Result<()> {
-    let tile = Tile { x: 0, y: 0, width: scene.film.width.min(8), height: scene.film.height.min(8) };
-    tracer.trace(&Batch { tile, samples: 0..4, group: 1 }).map(drop)
-}
-
-/// How long a tracer of a scene takes to be ready, and what it takes. In this order: seconds of building, those from the scene to the first samples, and the bytes of device memory that it takes (none for the CPU).
-pub(super) fn ready(bench: &Workbench, scene: &Scene, backend: Backend) -> Result<(f64, f64, Option<u64>)> {
-    let before = bench.allocated_bytes(backend);
-    let start = Instant::now();
-    let mut tracer = bench.tracer(scene, backend)?;
-    let built = start.elapsed().as_secs_f64();
-    let bytes = bench.allocated_bytes(backend).zip(before).map(|(now, before)| now.saturating_sub(before));
-    warm_up(tracer.as_mut(), scene)?;
-    Ok((built, start.elapsed().as_secs_f64(), bytes))
-}
-
-/// A whole render of so many samples a pixel.
-fn render_samples(tracer: &mut dyn Tracer, scene: &Scene, spp: u32) -> Result<Rendered> {
-    let limits = Limits { spp: Some(spp), ..Limits::default() };
-    let size = (scene.film.width, scene.film.height);
-    let rendered = render(tracer, size, limits, &mut |_| {}, &AtomicBool::new(false))?;
-    match rendered.end {
-        End::Failed(error) => Err(error),
-        _ => Ok(rendered),
-    }
-}
-
-fn picture(rendered: &Rendered) -> Picture {
-    let film = &rendered.film;
-    let rgb = (0..film.pixels()).map(|pixel| film.mean(pixel).map(|v| v as f32)).collect();
-    Picture { width: film.width, height: film.height, rgb, error: None, clamped: false }
-}
-
-/// What the picture is held against.
-pub(super) struct Reference {
-    pub picture: Picture,
-    /// Its own relMSE, as it is estimated; none where nothing tells.
-    pub own_error: Option<f64>,
-    /// Where it comes from.
-    pub words: String,
-}
-
-impl Reference {
-    /// A file's picture, whose error is known if it holds standard errors.
-    pub fn given(picture: &Picture) -> Self {
-        let own_error = picture.error.as_ref().and_then(|errors| {
-            let pairs = errors.iter().zip(&picture.rgb).filter(|(e, b)| metrics::finite(e) && metrics::finite(b));
-            let all: Vec<f64> = pairs
-                .flat_map(|(e, b)| {
-                    (0..3).map(|c| f64::from(e[c]).powi(2) / (f64::from(b[c]).powi(2) + luminaire::film::REL_MSE_FLOOR))
-                })
-                .collect();
-            (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64)
-        });
-        Reference { picture: picture.clone(), own_error, words: "the picture that was given".into() }
-    }
-
-    /// Seconds of a short render, the least of three: what else the machine does can only make it slower.
-    ///
-    /// # Errors
-    /// If the backend fails.
-    pub fn pace(bench: &Workbench, scene: &Scene, backend: Backend) -> Result<f64> {
-        let mut tracer = bench.tracer(scene, backend)?;
-        warm_up(tracer.as_mut(), scene)?;
-        (0..3).try_fold(f64::INFINITY, |least, _| {
-            Ok(least.min(render_samples(tracer.as_mut(), scene, 4)?.progress.seconds))
-        })
-    }
-
-    /// Renders a scene in about so many seconds: a power of two of samples, so that a run on the same machine mostly gets the same.
-    ///
-    /// # Errors
-    /// If the backend fails.
-    pub fn rendered(
-        bench: &Workbench,
-        scene: &Scene,
-        contender: &Contender,
-        backend: Backend,
-        seconds: f64,
-    ) -> Result<Self> {
-        let mut tracer = bench.tracer(scene, backend)?;
-        warm_up(tracer.as_mut(), scene)?;
-        let mut spp = 4;
-        let mut rendered = render_samples(tracer.as_mut(), scene, spp)?;
-        // Short renders are slower by the sample: the pace is looked at again.
-        while rendered.progress.seconds < 0.5 * seconds {
-            let more = (seconds / rendered.progress.seconds.max(1e-9)).clamp(2.0, 16.0).log2().floor().exp2() as u32;
-            spp = spp.saturating_mul(more).min(1 << 22);
-            rendered = render_samples(tracer.as_mut(), scene, spp)?;
-            if spp == 1 << 22 {
-                break;
-            }
-        }
-        let own_error = rendered.film.error().map(|error| error.rel_mse);
-        let words = format!("{spp} samples a pixel of `{}` on {backend}, with another seed", contender.name);
-        Ok(Reference { picture: picture(&rendered), own_error, words })
     }
 }

@@ -1,6 +1,6 @@
 //! Where values lie on an axis, and which of them are written beside it.
 
-use super::{Axis, Scale};
+use super::axis::{Axis, Scale};
 
 /// Labels that fit beside an axis.
 const MOST_LABELS: f64 = 9.0;

@@ -1,7 +1,8 @@
-//! A chart as SVG: on white, for eyes that tell few colours apart, and lines upon each other to be seen.
+//! A chart as SVG: on white, in colours that colour-blind readers can distinguish, and so that lines that lie on each other are all seen.
 
+use super::axis::Scale;
+use super::data::{Chart, FRONT, Series};
 use super::ruler::Ruler;
-use super::{Chart, FRONT, Scale, Series};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};

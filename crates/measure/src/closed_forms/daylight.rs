@@ -1,8 +1,9 @@
 //! Skies through openings: sky components and the conservation of flux (CIE 171, 5.4, 5.9 and 5.11).
 
+use super::case::{Case, View};
 use super::formulas::{hemisphere, parallel_rectangles, perpendicular_rectangles, sky_through};
 use super::luminaires::{ALBEDO, look_along, plane};
-use super::{Case, View, empty};
+use super::views::empty;
 use glam::{Affine3A, DVec3, Vec3};
 use luminaire::scene::build::{add, matte, quad};
 use luminaire::scene::{Environment, EnvironmentImage, Scene};

@@ -1,7 +1,8 @@
 //! Mirrors and glass: Fresnel's reflectance, plates, and bodies in light that comes from everywhere (CIE 171, 5.5).
 
+use super::case::{BOUND, Case, Measured, View};
 use super::formulas::reflectance;
-use super::{BOUND, Case, Measured, View, empty};
+use super::views::empty;
 use glam::{Affine3A, Vec3};
 use luminaire::scene::build::{add, cube, estimator, icosphere, lamp, matte, pinhole, quad};
 use luminaire::scene::{Environment, Extinction, Material, Mesh, Scene};
@@ -111,7 +112,7 @@ pub(super) fn cases() -> Vec<Case> {
             expected,
             slack: 0.0,
             effort: 1,
-            measured: Measured::Reflectance(eta, angle, BOUND),
+            measured: Measured::Reflectance { eta, angle, bound: BOUND },
         });
     }
     // The same in pictures.

@@ -1,8 +1,9 @@
 //! Plates that light each other: the published form factors of squares, as mean irradiance over a plate.
 
+use super::case::{Case, View};
 use super::formulas::{parallel_rectangles, perpendicular_rectangles};
 use super::luminaires::{ALBEDO, look_along};
-use super::{Case, View, empty};
+use super::views::empty;
 use glam::{Affine3A, Vec3};
 use luminaire::scene::build::{add, lamp, matte, quad};
 

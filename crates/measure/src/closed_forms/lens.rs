@@ -4,8 +4,9 @@
 //! distance z, each part of it by the same share of the lens. On the film, as seen in the plane of focus, a point at z becomes a disc of the
 //! radius `R |z - f| / z`.
 
+use super::case::{Case, View};
 use super::formulas::disc_beyond;
-use super::{Case, View, empty};
+use super::views::empty;
 use glam::{Affine3A, Vec3};
 use luminaire::scene::build::{add, lamp, mesh, quad};
 use luminaire::scene::{Lens, Mesh, Projection, Scene};

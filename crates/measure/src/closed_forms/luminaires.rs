@@ -1,7 +1,8 @@
 //! Direct light: irradiance from points, polygons, discs, spheres, infinity and an environment (CIE 171, 5.2 and 5.3).
 
+use super::case::{BOUND, Case, View};
 use super::formulas::{polygon, polyhedron, solid_angle, solid_angle_of_rectangle};
-use super::{BOUND, Case, View, empty, speck};
+use super::views::{empty, speck};
 use glam::{Affine3A, DVec3, Vec3, Vec3Swizzles};
 use luminaire::scene::build::{add, icosphere, lamp, matte, mesh, quad};
 use luminaire::scene::{Environment, Integrator, Luminaire, Mesh, Projection, Scene};

@@ -1,8 +1,9 @@
 //! Indirect light: furnaces, closed rooms, and surfaces that light others (CIE 171, 5.6 to 5.8).
 
+use super::case::{Case, View};
 use super::formulas::polygon;
 use super::luminaires::{infinite, look_along, point};
-use super::{Case, View, empty, speck};
+use super::views::{empty, speck};
 use glam::{Affine3A, DVec3, Vec3};
 use luminaire::scene::build::{add, cube, estimator, icosphere, matte, quad};
 use luminaire::scene::{Estimator, Extinction, LightSampling, Material};

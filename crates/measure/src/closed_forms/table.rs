@@ -1,8 +1,12 @@
 //! The table of all cases, its probability, and its chart.
 
-use super::{Case, Measured, measure};
+use super::case::{Case, Measured};
+use super::measure::measure;
+use super::views::SIDE;
 use crate::Workbench;
 use crate::chart::{Axis, Chart, Point, Series};
+use crate::report::words::{decimals, with_error};
+use crate::report::{self, markdown};
 use crate::statistics::{Estimate, sidak, two_sided};
 use luminaire::Result;
 use luminaire::backend::Backend;
@@ -38,15 +42,20 @@ impl Row {
     /// Relative deviation, and for a function that is at most 1 the absolute one.
     pub fn deviation(&self, backend: usize) -> f64 {
         let off = self.found[backend].mean - self.case.expected;
-        if matches!(self.case.measured, Measured::Reflectance(..)) { off } else { off / self.case.expected }
+        if matches!(self.case.measured, Measured::Reflectance { .. }) { off } else { off / self.case.expected }
     }
 
     /// The bound of [`Row::deviation`] where chance does not enter.
     pub fn bound(&self) -> Option<f64> {
         match self.case.measured {
             Measured::Estimated(_) => None,
-            Measured::Certain(_, bound) | Measured::Reflectance(_, _, bound) => Some(bound),
+            Measured::Certain { bound, .. } | Measured::Reflectance { bound, .. } => Some(bound),
         }
+    }
+
+    /// The first three cells of the tables.
+    fn cells(&self, expected: String) -> Vec<String> {
+        vec![self.case.name.clone(), self.case.formula.into(), expected]
     }
 }
 
@@ -74,12 +83,14 @@ pub struct Verdict {
     pub largest: f64,
     /// Probability that the sum of all squares of `z` is at least as large (chi-square): many small errors show here.
     pub squares: f64,
-    /// The largest relative standard error, of which case.
-    pub blunt: (f64, String),
+    /// The case with the largest relative standard error, and its backend.
+    pub bluntest: String,
+    /// That error.
+    pub bluntest_error: f64,
 }
 
 impl Table {
-    /// Measures cases on every backend, with `per_pixel` samples for each of 256 pixels (and per effort); `progress` is told each case.
+    /// Measures cases on every backend, with `per_pixel` samples for each of 256 pixels (and per effort); `progress` gets each case when it is done.
     ///
     /// # Errors
     /// If a backend fails.
@@ -97,7 +108,7 @@ impl Table {
             rows.push(Row { case, found });
             progress(rows.last().expect("one was pushed"));
         }
-        Ok(Table { backends, samples: per_pixel * super::SIDE * super::SIDE, rows })
+        Ok(Table { backends, samples: per_pixel * SIDE * SIDE, rows })
     }
 
     fn values(&self) -> impl Iterator<Item = (&Row, usize)> {
@@ -109,9 +120,9 @@ impl Table {
         let name = |(row, backend): &(&Row, usize)| format!("{}, {}", row.case.name, self.backends[*backend]);
         let count = self.values().count();
         let z = |(row, backend): &(&Row, usize)| row.z(*backend);
-        let sharpness = |(row, backend): &(&Row, usize)| row.found[*backend].error / row.case.expected.abs();
+        let relative_error = |(row, backend): &(&Row, usize)| row.found[*backend].error / row.case.expected.abs();
         let furthest = self.values().max_by(|a, b| z(a).abs().total_cmp(&z(b).abs()));
-        let blunt = self.values().max_by(|a, b| sharpness(a).total_cmp(&sharpness(b)));
+        let bluntest = self.values().max_by(|a, b| relative_error(a).total_cmp(&relative_error(b)));
         let squares: f64 = self.values().map(|value| z(&value).powi(2)).sum();
         let largest = furthest.map_or(0.0, |value| z(&value));
         Verdict {
@@ -120,7 +131,8 @@ impl Table {
             z: largest,
             largest: sidak(two_sided(largest), count),
             squares: ChiSquared::new(count as f64).map_or(1.0, |distribution| distribution.sf(squares)),
-            blunt: blunt.map(|value| (sharpness(&value), name(&value))).unwrap_or_default(),
+            bluntest: bluntest.map(|value| name(&value)).unwrap_or_default(),
+            bluntest_error: bluntest.map_or(0.0, |value| relative_error(&value)),
         }
     }
 
@@ -140,44 +152,42 @@ impl Table {
         beyond
     }
 
-    /// The table in Markdown, subject by subject: where chance enters, and where it does not.
+    /// The table in Markdown, subject by subject: where chance enters.
     pub fn markdown(&self) -> String {
-        let mut text = String::from("| case | formula | expected |");
-        for backend in &self.backends {
-            text += &format!(" {} | z |", name(*backend));
-        }
-        text += &format!("\n|---|---|---|{}\n", "---|---|".repeat(self.backends.len()));
+        let backends = self.backends.iter().flat_map(|backend| [name(*backend), "z"]);
+        let columns: Vec<&str> = ["case", "formula", "expected"].into_iter().chain(backends).collect();
+        let mut text = markdown::head(&columns);
         let mut subject = "";
         for row in self.rows.iter().filter(|row| row.by_chance()) {
             if row.case.subject != subject {
                 subject = row.case.subject;
-                text += &format!("| **{subject}** | | |{}\n", " | |".repeat(self.backends.len()));
+                text += &markdown::band(subject, columns.len());
             }
             let least = row.found.iter().map(|estimate| estimate.error).fold(f64::INFINITY, f64::min);
             let digits = decimals(least);
-            text += &format!("| {} | {} | {:.digits$} |", row.case.name, row.case.formula, row.case.expected);
+            let mut cells = row.cells(format!("{:.digits$}", row.case.expected));
             for (index, estimate) in row.found.iter().enumerate() {
-                text += &format!(" {} | {:+.1} |", with_error(*estimate), row.z(index));
+                cells.extend([with_error(*estimate), format!("{:+.1}", row.z(index))]);
             }
-            text += "\n";
+            text += &markdown::row(&cells);
         }
         text
     }
 
     /// The table of what chance does not enter, in Markdown.
     pub fn markdown_without_chance(&self) -> String {
-        let mut text = String::from("| case | formula | expected |");
-        for backend in &self.backends {
-            text += &format!(" {}: off by |", name(*backend));
-        }
-        text += &format!(" bound |\n|---|---|---|{}---|\n", "---|".repeat(self.backends.len()));
+        let mut columns = ["case", "formula", "expected"].map(String::from).to_vec();
+        columns.extend(self.backends.iter().map(|backend| format!("{}: off by", name(*backend))));
+        columns.push("bound".into());
+        let mut table = report::table::Table::new(columns);
         for row in &self.rows {
             let Some(bound) = row.bound() else { continue };
-            text += &format!("| {} | {} | {:.6e} |", row.case.name, row.case.formula, row.case.expected);
-            (0..self.backends.len()).for_each(|index| text += &format!(" {:.0e} |", row.deviation(index).abs()));
-            text += &format!(" {bound:.0e} |\n");
+            let mut cells = row.cells(format!("{:.6e}", row.case.expected));
+            cells.extend((0..self.backends.len()).map(|index| format!("{:.0e}", row.deviation(index).abs())));
+            cells.push(format!("{bound:.0e}"));
+            table.rows.push(cells);
         }
-        text
+        table.markdown()
     }
 
     /// Every `z`, sorted, over what is expected of a normal variable of that rank: without any error but chance the points lie on the diagonal.
@@ -221,28 +231,5 @@ fn name(backend: Backend) -> &'static str {
         Backend::Cpu => "reference (f64)",
         Backend::RayQuery => "ray query",
         Backend::ComputeBvh => "compute BVH",
-    }
-}
-
-/// Decimals that show two digits of an error.
-fn decimals(error: f64) -> usize {
-    if error > 0.0 { (1.0 - error.log10().floor()).clamp(0.0, 9.0) as usize } else { 6 }
-}
-
-/// A mean with its standard error in units of the last digit: 0.2003(12).
-fn with_error(Estimate { mean, error }: Estimate) -> String {
-    let digits = decimals(error);
-    format!("{mean:.digits$}({:.0})", error * 10f64.powi(digits as i32))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn errors_in_units_of_the_last_digit() {
-        assert_eq!(with_error(Estimate { mean: 0.20034, error: 0.0012 }), "0.2003(12)");
-        assert_eq!(with_error(Estimate { mean: 19.98, error: 0.25 }), "19.98(25)");
-        assert_eq!(with_error(Estimate { mean: 1.0, error: 0.0 }), "1.000000(0)");
     }
 }

@@ -2,10 +2,10 @@
 
 use super::rooms::{furnace, furnace_radiance, without_roulette};
 use super::trial::Trial;
-use super::words::{count, deviation, share};
 use super::{Definition, Findings, Sweep};
 use crate::Workbench;
 use crate::chart::{Axis, Chart, Point, Series};
+use crate::report::words::{count, deviation, share};
 use luminaire::Result;
 use luminaire::backend::Backend;
 use luminaire::reference::scatter::{MAX_SURVIVAL, SURE_THROUGHPUT};
@@ -57,7 +57,7 @@ struct Termination {
 }
 
 impl Termination {
-    /// Whether all paths are the same, so that two of a pixel tell all.
+    /// Whether all paths are the same, so that two of a pixel are enough.
     fn is_even(&self) -> bool {
         self.estimator.extinction == Extinction::Off
     }

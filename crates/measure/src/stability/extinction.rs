@@ -1,11 +1,12 @@
 //! What ends a path too early: thresholds, limits and roulette without weights, their bias against the work they save.
 
 use super::rooms::{furnace, furnace_radiance, room, without_roulette};
+use super::series::above_from;
 use super::trial::Trial;
-use super::words::{above_from, deviation, share};
 use super::{Definition, Findings, Sweep};
 use crate::Workbench;
 use crate::chart::{Axis, Chart, Point, Series};
+use crate::report::words::{deviation, share};
 use luminaire::Result;
 use luminaire::backend::Backend;
 use luminaire::scene::{Estimator, Extinction};
@@ -57,7 +58,7 @@ struct Measured {
 }
 
 impl Measured {
-    /// The bias; a method of which three standard errors cannot tell that it has one has none.
+    /// The bias, as far as it is certain: 0 where it is within three standard errors.
     fn certain_bias(&self) -> f64 {
         if self.bias.abs() > 3.0 * self.error { self.bias } else { 0.0 }
     }

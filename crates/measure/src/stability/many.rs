@@ -1,11 +1,12 @@
 //! Very many luminaires, instances and bounces: what they cost, and what they do to the error.
 
 use super::rooms::{furnace, without_roulette};
+use super::series::largest;
 use super::trial::Trial;
-use super::words::{count, largest, share};
 use super::{Definition, Findings, Sweep};
 use crate::Workbench;
 use crate::chart::{Axis, Chart, Point, Series};
+use crate::report::words::{count, share};
 use glam::{Affine3A, Vec3};
 use luminaire::Result;
 use luminaire::backend::Backend;
@@ -23,7 +24,7 @@ struct Steps {
     numbers: Vec<u32>,
     /// Seconds of one timing, of which there are [`ROUNDS`] for each number.
     seconds: f64,
-    /// Samples a pixel of what tells the noise.
+    /// Samples a pixel from which the noise is estimated.
     samples: u32,
 }
 

@@ -17,16 +17,17 @@ mod page;
 mod rooms;
 mod samples;
 pub mod scale;
+mod series;
 pub mod slivers;
 mod spot;
 mod trial;
-mod words;
 
 pub use page::{Head, Outcome, page};
 
 use super::Workbench;
 use super::chart::{CSV_HEADER, Chart};
-use luminaire::{Error, Result};
+use super::report::choice;
+use luminaire::Result;
 
 /// A sweep that was run.
 #[derive(Debug, Clone, PartialEq)]
@@ -92,12 +93,7 @@ pub const SWEEPS: &[Definition] = &[
 /// The sweeps of these names, in the order of the map; all of them for no name.
 ///
 /// # Errors
-/// [`Error::Usage`] for a name that no sweep has; it lists those there are.
+/// [`Error::Usage`](luminaire::Error::Usage) for a name that no sweep has; it lists those there are.
 pub fn named(names: &[String]) -> Result<Vec<Definition>> {
-    if let Some(unknown) = names.iter().find(|name| SWEEPS.iter().all(|sweep| sweep.name != **name)) {
-        let known: Vec<_> = SWEEPS.iter().map(|sweep| sweep.name).collect();
-        return Err(Error::Usage(format!("there is no sweep `{unknown}`; there are: {}", known.join(", "))));
-    }
-    let wanted = |sweep: &&Definition| names.is_empty() || names.iter().any(|name| name == sweep.name);
-    Ok(SWEEPS.iter().filter(wanted).copied().collect())
+    choice::named("sweep", SWEEPS, |sweep| sweep.name, names)
 }

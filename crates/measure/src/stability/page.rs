@@ -1,6 +1,9 @@
 //! The stability map as a page of Markdown.
 
 use super::{Definition, Sweep};
+use crate::report::markdown::image;
+use crate::report::table::Table;
+use crate::report::words::{capital, one_line};
 use luminaire::Result;
 
 /// What stands above the sweeps.
@@ -25,17 +28,18 @@ pub fn page(head: &Head, outcomes: &[Outcome]) -> String {
         "# Where methods fail\n\n\
          Every method over the range in which it can fail, side by side on every backend; sentences and charts are of one run.\n\n\
          - Command: `{}`\n- Device: {}\n- Ran on: {}\n\n\
-         Bars are two standard errors each way. Ratios of times are of things that ran side by side.\n\n\
-         | sweep | who fails, from where | what luminaire does |\n|---|---|---|\n",
+         Bars are two standard errors each way. Ratios of times are of things that ran side by side.\n\n",
         head.command, head.device, head.backends
     );
-    for (sweep, outcome) in outcomes {
+    let row = |(sweep, outcome): &Outcome| {
         let (starts, mends) = match outcome {
-            Ok(sweep) => (cell(&sweep.findings.starts), cell(&sweep.findings.mends)),
-            Err(error) => (format!("the sweep failed: {}", cell(&error.to_string())), String::new()),
+            Ok(sweep) => (one_line(&sweep.findings.starts), one_line(&sweep.findings.mends)),
+            Err(error) => (format!("the sweep failed: {}", one_line(&error.to_string())), String::new()),
         };
-        text += &format!("| [{name}](#{name}) | {starts} | {mends} |\n", name = sweep.name);
-    }
+        vec![format!("[{name}](#{name})", name = sweep.name), starts, mends]
+    };
+    let columns = ["sweep", "who fails, from where", "what luminaire does"];
+    text += &Table::new(columns).with_rows(outcomes.iter().map(row)).markdown();
     for (sweep, outcome) in outcomes {
         text += &format!("\n## <a id=\"{}\"></a>{}\n\n", sweep.name, capital(sweep.title));
         match outcome {
@@ -49,7 +53,7 @@ pub fn page(head: &Head, outcomes: &[Outcome]) -> String {
 fn body(head: &Head, name: &str, sweep: &Sweep) -> String {
     let mut text = String::new();
     for chart in &sweep.charts {
-        text += &format!("![{}](<{}/{name}-{}.svg>)\n\n", bracketless(&chart.title), head.folder, chart.name);
+        text += &image(&chart.title, &head.folder, &format!("{name}-{}.svg", chart.name));
     }
     let findings = &sweep.findings;
     for (question, answer) in [
@@ -61,19 +65,4 @@ fn body(head: &Head, name: &str, sweep: &Sweep) -> String {
         text += &format!("**{question}** {}\n\n", capital(answer.trim()));
     }
     text + &format!("The numbers: [{name}.csv](<{}/{name}.csv>)\n", head.folder)
-}
-
-/// Text as one cell of a table.
-fn cell(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ").replace('|', "\\|")
-}
-
-/// The words of an image must not end its brackets.
-fn bracketless(text: &str) -> String {
-    text.replace(['[', ']'], "")
-}
-
-fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }

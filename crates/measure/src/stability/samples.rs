@@ -1,9 +1,10 @@
 //! Adding up very many samples: what the sum's precision does to the mean.
 
-use super::words::{above_from, count, largest, share};
+use super::series::{above_from, largest};
 use super::{Definition, Findings, Sweep};
 use crate::Workbench;
 use crate::chart::{Axis, Chart, Point, Series};
+use crate::report::words::{count, share};
 use glam::{Affine3A, Vec3};
 use luminaire::film::{AovSum, Batch, PixelSum, Tile};
 use luminaire::render::{Limits, Traced, Tracer, render};
