@@ -4,7 +4,8 @@
 //! `(a - b)^2 / (b^2 + 0.01)` over pixels and channels (relMSE), against a picture of many samples by the default estimator. Error falls
 //! as one over time, so that their product does not depend on the number of samples: half of it is twice as fast.
 
-use crate::Texts;
+use crate::tables::Folder;
+use crate::{Effort, Texts};
 use luminaire::backend::Backend;
 use luminaire::film::{Batch, Tile};
 use luminaire::render::Tracer;
@@ -93,9 +94,9 @@ fn rows(scene: &Scene) -> Vec<Row> {
     rows
 }
 
-/// Measures every scene and estimator on every GPU backend, or on the reference if there is none.
-pub fn measure(bench: &Workbench, texts: &mut Texts) -> Result<(), Box<dyn Error>> {
-    let (rounds, reference_samples) = if bench.long { (8, 4096) } else { (3, 1024) };
+/// Measures every scene and estimator on every GPU backend, or on the reference if there is none; writes the table.
+pub fn measure(bench: &Workbench, effort: Effort, tables: &Folder, texts: &mut Texts) -> Result<(), Box<dyn Error>> {
+    let (rounds, reference_samples) = effort.of([(1, 64), (3, 1024), (8, 4096)]);
     let mut backends = bench.backends();
     if backends.len() > 1 {
         backends.retain(|backend| *backend != Backend::Cpu);
@@ -105,6 +106,8 @@ pub fn measure(bench: &Workbench, texts: &mut Texts) -> Result<(), Box<dyn Error
         table += &format!(" {backend}: relMSE x s | to default |");
     }
     table += &format!("\n|---|---|---|---|---|{}\n", "---|---|".repeat(backends.len()));
+    // Error times time over the default's on the first backend: estimator by estimator, scene by scene.
+    let mut summary: Vec<(String, Vec<String>)> = Vec::new();
     for name in SCENES {
         let mut scene = scene::load(Path::new(&format!("scenes/{name}/{name}.toml")))?;
         (scene.film.width, scene.film.height) = (SIZE, SIZE);
@@ -143,6 +146,11 @@ pub fn measure(bench: &Workbench, texts: &mut Texts) -> Result<(), Box<dyn Error
             let first = &found[0][index];
             let rays = first.rays as f64 / f64::from(rounds * SAMPLES * SIZE * SIZE);
             table += &format!("| {name} | {} | {:.2e} | {rays:.2} | {:.3} |", row.name, first.error, first.mean);
+            let to_default = found[0][index].product() / found[0][default].product();
+            match summary.iter_mut().find(|(estimator, _)| *estimator == row.name) {
+                Some((_, cells)) => cells.push(format!("{to_default:.2}")),
+                None => summary.push((row.name.clone(), vec![format!("{to_default:.2}")])),
+            }
             for here in &found {
                 let product = here[index].product();
                 table += &format!(" {product:.2e} | {:.2} |", product / here[default].product());
@@ -150,7 +158,11 @@ pub fn measure(bench: &Workbench, texts: &mut Texts) -> Result<(), Box<dyn Error
             table += "\n";
         }
     }
-    texts.insert("estimators", table);
+    tables.save("estimators", &table)?;
+    let mut short = format!("| estimator | {} |\n|---|{}\n", SCENES.join(" | "), "---|".repeat(SCENES.len()));
+    summary.iter().for_each(|(name, cells)| short += &format!("| {name} | {} |\n", cells.join(" | ")));
+    texts.insert("estimators", short);
+    texts.insert("estimators-backend", backends[0].to_string());
     texts.insert("estimators-rounds", rounds.to_string());
     texts.insert("estimators-reference", reference_samples.to_string());
     Ok(())
