@@ -226,7 +226,7 @@ fn sweep(bench: &Workbench, steps: &Steps) -> Result<Sweep> {
     charts.push(cap);
     let verdicts = verdicts(&all, &beyond);
     let measured = all.iter().flat_map(|(_, of)| of.iter().flatten()).chain(&beyond);
-    let range = stretch(measured.map(Measured::albedo), Worse::Upwards, "as the albedo");
+    let range = stretch(measured.map(Measured::albedo), Worse::Upwards, "(albedo)");
     let summary = up_to(&verdicts, "", |end| {
         format!("Keep albedos at {end} or below, and do without limits of bounces in bright rooms.")
     });

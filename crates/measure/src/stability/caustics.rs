@@ -226,7 +226,7 @@ pub fn lobe(bench: &Workbench, exponents: &[f32], samples: u32) -> Result<Sweep>
         light("both (MIS)", &noise, &series.iter().collect::<Vec<_>>(), Worse::Upwards)
     };
     let verdicts = vec![all(&shares)];
-    let range = stretch(exponents.iter().map(|exponent| f64::from(*exponent)), Worse::Upwards, "as the exponent");
+    let range = stretch(exponents.iter().map(|exponent| f64::from(*exponent)), Worse::Upwards, "(exponent)");
     let summary = up_to(&verdicts, "both (MIS)", |end| {
         format!("Caustics by way of a lobe are even up to an exponent of {end}, and fireflies beyond.")
     });

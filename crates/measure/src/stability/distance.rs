@@ -86,7 +86,7 @@ pub fn sweep(bench: &Workbench, distances: &[f64], rays: usize) -> Result<Sweep>
     }
     let (errors, counts): (Vec<&Chart>, Vec<_>) = charts.iter().partition(|chart| chart.name.starts_with("error"));
     let verdicts = geometric(&counts, &errors, Worse::Upwards);
-    let range = stretch(distances.iter().copied(), Worse::Upwards, "sizes");
+    let range = stretch(distances.iter().copied(), Worse::Upwards, "sizes from the origin");
     let summary =
         up_to(&verdicts, COMPUTE_BVH, |end| format!("Keep a scene within {end} of its own sizes from the origin."));
     let findings = findings(&charts);

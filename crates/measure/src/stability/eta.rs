@@ -122,7 +122,7 @@ pub fn sweep(bench: &Workbench, etas: &[f64], angles: usize, samples: u32) -> Re
     let by_index: Vec<Chart> = charts[..3].iter().cloned().map(index_itself).collect();
     let mut verdicts = geometric(&[], &[&by_index[2]], Worse::Upwards);
     verdicts.extend(geometric(&[], &[&by_index[0], &by_index[1]], Worse::Downwards));
-    let range = stretch(etas.iter().copied(), Worse::Upwards, "");
+    let range = stretch(etas.iter().copied(), Worse::Upwards, "(index)");
     let summary = everywhere(
         &verdicts,
         COMPUTE_BVH,

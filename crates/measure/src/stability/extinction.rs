@@ -209,7 +209,7 @@ fn sweep(bench: &Workbench, steps: &Steps) -> Result<Sweep> {
     let rooms =
         bench.backends().into_iter().map(|backend| measure(bench, backend, steps)).collect::<Result<Vec<_>>>()?;
     let verdicts = verdicts(steps, &rooms);
-    let range = stretch(steps.thresholds.iter().copied(), Worse::Upwards, "as the threshold");
+    let range = stretch(steps.thresholds.iter().copied(), Worse::Upwards, "(threshold)");
     let summary = up_to(&verdicts, THRESHOLD, |end| {
         format!("Stay with re-weighted roulette; thresholds above {end} darken, literal extinction always does.")
     });

@@ -165,7 +165,7 @@ pub fn sweep(bench: &Workbench, steps: &Steps) -> Result<Sweep> {
         }
     }
     let verdicts = verdicts(&noise, &[&sky_mis[..], &lamp_mis].concat(), &sky_bsdf);
-    let range = stretch(steps.exponents.iter().map(|exponent| f64::from(*exponent)), Worse::Upwards, "as the exponent");
+    let range = stretch(steps.exponents.iter().map(|exponent| f64::from(*exponent)), Worse::Upwards, "(exponent)");
     let summary = everywhere(
         &verdicts,
         WITH_ROULETTE,

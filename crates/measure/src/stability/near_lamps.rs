@@ -134,7 +134,7 @@ pub fn sweep(bench: &Workbench, steps: &Steps) -> Result<Sweep> {
     }
     let (worse, unit) = match steps.case {
         Case::Distance => (Worse::Upwards, "sides away"),
-        Case::Tilt => (Worse::Downwards, "as the sine"),
+        Case::Tilt => (Worse::Downwards, "(sine)"),
     };
     let verdict = |method: usize| {
         let gpu = gpu.iter().zip(&on_gpu).filter(|(_, (_, of))| *of == method).map(|(series, _)| series);
