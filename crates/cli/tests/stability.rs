@@ -2,6 +2,7 @@
 
 use luminaire::Error;
 use luminaire_measure::chart::*;
+use luminaire_measure::stability::verdict::{Judgement, Verdict, Worse};
 use luminaire_measure::stability::*;
 use std::path::Path;
 use std::process::{Command, Output};
@@ -92,27 +93,49 @@ fn numbers_are_kept() {
 
 #[test]
 fn a_page_has_every_sweep_also_the_failed() {
-    let definition = |name| Definition { name, title: "from 1 to 2", run: |_| Err(Error::NoDevice("none".into())) };
+    let definition =
+        |name, family| Definition { name, family, title: "from 1 to 2", run: |_| Err(Error::NoDevice("none".into())) };
     let findings = Findings {
         starts: "from 1 on | at once".into(),
         how: "by rounding".into(),
         mends: "it counts".into(),
         sees: "nothing".into(),
     };
-    let done = Sweep { charts: vec![chart(Axis::linear("y"), &[])], findings };
+    let judged = [(1.0, Judgement::Safe), (2.0, Judgement::Wrong)];
+    let verdict = |method: &str| Verdict::new(method, judged, Worse::Upwards, "at 2: 7 | 8 rays a million");
+    let done = |methods: &[&str]| Sweep {
+        charts: vec![chart(Axis::linear("y"), &[])],
+        range: "1 to 2 sizes".into(),
+        verdicts: methods.iter().copied().map(verdict).collect(),
+        summary: "Stay at 1.".into(),
+        findings: findings.clone(),
+    };
     let head = Head {
         command: "luminaire stability".into(),
         device: "a device, a driver".into(),
         backends: "cpu".into(),
         folder: "stability".into(),
     };
-    let failed = Err(Error::NoDevice("the device is lost".into()));
-    let text = page(&head, &[(definition("good"), Ok(done)), (definition("bad"), failed)]);
+    let failed = || Err(Error::NoDevice("the device is lost".into()));
+    let geometry = done(&["f64 reference", "compute BVH", "f32 model"]);
+    let outcomes = [
+        (definition("good", Family::Geometry), Ok(geometry)),
+        (definition("bad", Family::Geometry), failed()),
+        (definition("bright", Family::Light), Ok(done(&["the default", "another", "a third"]))),
+        (definition("dark", Family::Light), failed()),
+    ];
+    let text = page(&head, &outcomes);
     for part in [
         "`luminaire stability`",
         "a device, a driver",
-        "| [good](#good) | from 1 on \\| at once | it counts |",
-        "| [bad](#bad) | the sweep failed: the device is lost |  |",
+        "| sweep | range | cpu | compute BVH | ray query | in one sentence |\n|---|---|---|---|---|---|\n",
+        "| [good](#good) | 1 to 2 sizes | ● at 1, ✖ beyond | ● at 1, ✖ beyond | – | Stay at 1. |",
+        "| [bad](#bad) |  |  |  |  | the sweep failed: the device is lost |",
+        "| sweep | range | default | others | in one sentence |\n|---|---|---|---|---|\n",
+        "| [bright](#bright) | 1 to 2 sizes | ● at 1, ✖ beyond | another: ● at 1, ✖ beyond; a third: ● at 1, ✖ beyond | Stay at 1. |",
+        "| [dark](#dark) |  |  |  | the sweep failed: the device is lost |",
+        "## <a id=\"dark\"></a>From 1 to 2\n\nThe sweep failed: the device is lost",
+        "| f32 model | ● at 1, ✖ beyond | at 2: 7 \\| 8 rays a million |",
         "![A title](<stability/good-one.svg>)",
         "[good.csv](<stability/good.csv>)",
         "**Where it starts to fail.** From 1 on",
@@ -122,6 +145,10 @@ fn a_page_has_every_sweep_also_the_failed() {
     ] {
         assert!(text.contains(part), "no {part:?} in:\n{text}");
     }
+    // What only explains has no place in the first table.
+    assert!(!text[..text.find("How it was measured").unwrap()].contains("f32 model"), "{text}");
+    let alone = page(&head, &[(definition("dark", Family::Light), failed())]);
+    assert!(!alone.contains("Geometry, by backend"), "a table of no sweep:\n{alone}");
 }
 
 #[test]
@@ -199,6 +226,11 @@ fn a_sweep_without_a_device() {
     assert_eq!(names(&folder.path().join("out")), files);
     let page = std::fs::read_to_string(folder.path().join("page.md")).unwrap();
     assert!(page.contains("not here: compute-bvh, ray-query"), "{page}");
+    // Measured: the sums hold over the whole range, and a plain sum in single precision does not.
+    assert!(page.contains("| [samples](#samples) | 1 to 1e6 samples a pixel | ● | f32 sum: ● to"), "{page}");
+    let row = page.lines().find(|line| line.starts_with("| [samples]")).unwrap();
+    let sentence = row.rsplit(" | ").next().unwrap().trim_end_matches(" |");
+    assert!(sentence.chars().count() <= SUMMARY && sentence.ends_with('.'), "{sentence}");
     assert!(page.contains("(<out/samples-constant.svg>)"), "{page}");
     assert!(page.contains("luminaire stability samples --out out --page page.md"), "{page}");
     for svg in &files[..3] {

@@ -20,7 +20,7 @@ fn every_backend_agrees_with_every_closed_form() {
     let bench = common::bench();
     let table = Table::measure(&bench, cases(), SAMPLES, |_| ()).expect("the backends work");
     let verdict = table.verdict();
-    println!("{}\n{}\n{verdict:#?}", table.markdown(), table.markdown_without_chance());
+    println!("{}\n{}\n{verdict:#?}", table.by_chance().markdown(), table.without_chance().markdown());
     let beyond = table.beyond_rounding();
     assert!(beyond.is_empty(), "{beyond:#?}");
     let (error, case) = (verdict.bluntest_error, &verdict.bluntest);

@@ -4,7 +4,8 @@
 //! `(a - b)^2 / (b^2 + 0.01)` over pixels and channels (relMSE), against a picture of many samples by the default estimator. Error falls
 //! as one over time, so that their product does not depend on the number of samples: half of it is twice as fast.
 
-use crate::Texts;
+use crate::tables::Folder;
+use crate::{Effort, Texts};
 use luminaire::backend::Backend;
 use luminaire::film::{Batch, Tile};
 use luminaire::render::Tracer;
@@ -101,9 +102,9 @@ fn rows(scene: &Scene) -> Vec<Row> {
     rows
 }
 
-/// Measures every scene and estimator on every GPU backend, or on the reference if there is none.
-pub fn measure(bench: &Workbench, texts: &mut Texts) -> Result<(), Box<dyn Error>> {
-    let (rounds, reference_samples) = if bench.long { (8, 4096) } else { (3, 1024) };
+/// Measures every scene and estimator on every GPU backend, or on the reference if there is none; writes the table.
+pub fn measure(bench: &Workbench, effort: Effort, tables: &Folder, texts: &mut Texts) -> Result<(), Box<dyn Error>> {
+    let (rounds, reference_samples) = effort.of([(1, 64), (3, 1024), (8, 4096)]);
     let mut backends = bench.backends();
     if backends.len() > 1 {
         backends.retain(|backend| *backend != Backend::Cpu);
@@ -111,6 +112,8 @@ pub fn measure(bench: &Workbench, texts: &mut Texts) -> Result<(), Box<dyn Error
     let mut columns = ["scene", "estimator", "relMSE", "rays a sample", "mean / reference"].map(String::from).to_vec();
     columns.extend(backends.iter().flat_map(|backend| [format!("{backend}: relMSE x s"), "to default".into()]));
     let mut table = Table::new(columns);
+    // Error times time over the default's on the first backend: estimator by estimator, scene by scene.
+    let mut summary: Vec<(String, Vec<String>)> = Vec::new();
     for name in SCENES {
         let mut scene = scene::load(Path::new(&format!("scenes/{name}/{name}.toml")))?;
         (scene.film.width, scene.film.height) = (SIZE, SIZE);
@@ -155,6 +158,11 @@ pub fn measure(bench: &Workbench, texts: &mut Texts) -> Result<(), Box<dyn Error
                 format!("{rays:.2}"),
                 format!("{:.3}", first.mean),
             ];
+            let to_default = found[0][index].product() / found[0][default].product();
+            match summary.iter_mut().find(|(estimator, _)| *estimator == row.name) {
+                Some((_, cells)) => cells.push(format!("{to_default:.2}")),
+                None => summary.push((row.name.clone(), vec![format!("{to_default:.2}")])),
+            }
             for here in &found {
                 let product = here[index].product();
                 cells.extend([format!("{product:.2e}"), format!("{:.2}", product / here[default].product())]);
@@ -162,7 +170,12 @@ pub fn measure(bench: &Workbench, texts: &mut Texts) -> Result<(), Box<dyn Error
             table.rows.push(cells);
         }
     }
-    texts.insert("estimators", table.markdown());
+    tables.save("estimators", &table)?;
+    let short = Table::new(["estimator"].into_iter().chain(SCENES))
+        .with_rows(summary.into_iter().map(|(name, cells)| [name].into_iter().chain(cells).collect()))
+        .markdown();
+    texts.insert("estimators", short);
+    texts.insert("estimators-backend", backends[0].to_string());
     texts.insert("estimators-rounds", rounds.to_string());
     texts.insert("estimators-reference", reference_samples.to_string());
     Ok(())

@@ -1,6 +1,7 @@
 //! The kernel against the reference, scene by scene: at equal random numbers, and as independent pictures.
 
-use crate::Texts;
+use crate::tables::Folder;
+use crate::{Effort, Texts};
 use luminaire::backend::Backend;
 use luminaire::scene::{self, Integrator, Sampler, Scene};
 use luminaire_measure::Workbench;
@@ -19,10 +20,10 @@ const GROUPS: u32 = 16;
 /// Width of the pictures.
 const WIDTH: u32 = 64;
 
-/// Measures every scene on every GPU backend.
-pub fn measure(bench: &Workbench, texts: &mut Texts) -> Result<(), Box<dyn Error>> {
+/// Measures every scene on every GPU backend; writes the table.
+pub fn measure(bench: &Workbench, effort: Effort, tables: &Folder, texts: &mut Texts) -> Result<(), Box<dyn Error>> {
     let backends: Vec<Backend> = bench.backends().into_iter().filter(|backend| *backend != Backend::Cpu).collect();
-    let samples = if bench.long { OTHER_LONG } else { OTHER };
+    let (equal, samples) = (effort.of([GROUPS, EQUAL, EQUAL]), effort.of([2 * GROUPS, OTHER, OTHER_LONG]));
     texts.insert("kernel-samples", samples.to_string());
     if backends.is_empty() {
         texts.insert("kernel", format!("Not measured: {}.", bench.device));
@@ -44,6 +45,7 @@ pub fn measure(bench: &Workbench, texts: &mut Texts) -> Result<(), Box<dyn Error
         "pixels: p",
     ]);
     let mut ps = Vec::new();
+    let mut found: Vec<Vec<[f64; 3]>> = backends.iter().map(|_| Vec::new()).collect();
     for name in SCENES {
         eprintln!("kernel against reference: {name}");
         let mut scene = scene::load(Path::new(&format!("scenes/{name}/{name}.toml")))?;
@@ -53,15 +55,15 @@ pub fn measure(bench: &Workbench, texts: &mut Texts) -> Result<(), Box<dyn Error
         if let Integrator::Path(estimator) = &mut short.integrator {
             estimator.max_bounces = Some(1);
         }
-        let short_reference = picture(&short, Backend::Cpu, EQUAL)?;
-        let reference = picture(&scene, Backend::Cpu, EQUAL)?;
+        let short_reference = picture(&short, Backend::Cpu, equal)?;
+        let reference = picture(&scene, Backend::Cpu, equal)?;
         // Independent numbers: successive groups of Sobol points depend on each other.
         let mut independent = scene.clone();
         independent.settings.sampler = Sampler::Independent;
         let long_reference = picture(&independent, Backend::Cpu, samples)?;
         for (index, &backend) in (1..).zip(&backends) {
-            let one = differences(&picture(&short, backend, EQUAL)?, &short_reference);
-            let full = differences(&picture(&scene, backend, EQUAL)?, &reference);
+            let one = differences(&picture(&short, backend, equal)?, &short_reference);
+            let full = differences(&picture(&scene, backend, equal)?, &reference);
             // Other seeds for each: independent pictures.
             let mut other = independent.clone();
             other.settings.seed = scene.settings.seed + index;
@@ -71,16 +73,39 @@ pub fn measure(bench: &Workbench, texts: &mut Texts) -> Result<(), Box<dyn Error
             let p_pixels = compare(&long, &long_reference);
             ps.extend([p_mean, p_pixels]);
             let mut cells = vec![name.to_owned(), backend.to_string()];
-            for differences in [one, full] {
+            for differences in [&one, &full] {
                 cells.extend([differences.largest, differences.percentile].map(|d| format!("{d:.1e}")));
             }
             cells.push(format!("{:.5}", a.mean / b.mean));
             cells.extend([p_mean, p_pixels].map(|p| format!("{p:.2}")));
             table.rows.push(cells);
+            found[index as usize - 1].push([one.percentile, full.percentile, p_mean.min(p_pixels)]);
         }
     }
     let smallest = ps.iter().copied().fold(1.0, f64::min);
-    texts.insert("kernel", table.markdown());
+    tables.save("kernel", &table)?;
+    let mut summary = Table::new([
+        "backend",
+        "one bounce: median scene",
+        "worst scene",
+        "full paths: median scene",
+        "worst scene",
+        "least p",
+    ]);
+    for (backend, found) in backends.iter().zip(&found) {
+        let [one, full, p] = [0, 1, 2].map(|which| {
+            let mut values: Vec<f64> = found.iter().map(|values| values[which]).collect();
+            values.sort_by(f64::total_cmp);
+            values
+        });
+        let middle = one.len() / 2;
+        let worst = one.len() - 1;
+        let mut cells = vec![backend.to_string()];
+        cells.extend([one[middle], one[worst], full[middle], full[worst]].map(|d| format!("{d:.1e}")));
+        cells.push(format!("{:.2}", p[0]));
+        summary.rows.push(cells);
+    }
+    texts.insert("kernel", summary.markdown());
     let among = sidak(smallest, ps.len());
     texts.insert(
         "kernel-verdict",

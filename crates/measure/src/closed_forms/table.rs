@@ -5,8 +5,8 @@ use super::measure::measure;
 use super::views::SIDE;
 use crate::Workbench;
 use crate::chart::{Axis, Chart, Point, Series};
+use crate::report;
 use crate::report::words::{decimals, with_error};
-use crate::report::{self, markdown};
 use crate::statistics::{Estimate, sidak, two_sided};
 use luminaire::Result;
 use luminaire::backend::Backend;
@@ -152,42 +152,36 @@ impl Table {
         beyond
     }
 
-    /// The table in Markdown, subject by subject: where chance enters.
-    pub fn markdown(&self) -> String {
+    /// The cases where chance enters.
+    pub fn by_chance(&self) -> report::table::Table {
         let backends = self.backends.iter().flat_map(|backend| [name(*backend), "z"]);
-        let columns: Vec<&str> = ["case", "formula", "expected"].into_iter().chain(backends).collect();
-        let mut text = markdown::head(&columns);
-        let mut subject = "";
-        for row in self.rows.iter().filter(|row| row.by_chance()) {
-            if row.case.subject != subject {
-                subject = row.case.subject;
-                text += &markdown::band(subject, columns.len());
-            }
+        let columns = ["subject", "case", "formula", "expected"].into_iter().chain(backends);
+        let cells = |row: &Row| {
             let least = row.found.iter().map(|estimate| estimate.error).fold(f64::INFINITY, f64::min);
             let digits = decimals(least);
-            let mut cells = row.cells(format!("{:.digits$}", row.case.expected));
+            let mut cells = vec![row.case.subject.to_owned()];
+            cells.extend(row.cells(format!("{:.digits$}", row.case.expected)));
             for (index, estimate) in row.found.iter().enumerate() {
                 cells.extend([with_error(*estimate), format!("{:+.1}", row.z(index))]);
             }
-            text += &markdown::row(&cells);
-        }
-        text
+            cells
+        };
+        report::table::Table::new(columns).with_rows(self.rows.iter().filter(|row| row.by_chance()).map(cells))
     }
 
-    /// The table of what chance does not enter, in Markdown.
-    pub fn markdown_without_chance(&self) -> String {
+    /// The cases where it does not.
+    pub fn without_chance(&self) -> report::table::Table {
         let mut columns = ["case", "formula", "expected"].map(String::from).to_vec();
         columns.extend(self.backends.iter().map(|backend| format!("{}: off by", name(*backend))));
         columns.push("bound".into());
-        let mut table = report::table::Table::new(columns);
-        for row in &self.rows {
-            let Some(bound) = row.bound() else { continue };
+        let cells = |row: &Row| {
+            let bound = row.bound()?;
             let mut cells = row.cells(format!("{:.6e}", row.case.expected));
             cells.extend((0..self.backends.len()).map(|index| format!("{:.0e}", row.deviation(index).abs())));
             cells.push(format!("{bound:.0e}"));
-            table.rows.push(cells);
-        }
-        table.markdown()
+            Some(cells)
+        };
+        report::table::Table::new(columns).with_rows(self.rows.iter().filter_map(cells))
     }
 
     /// Every `z`, sorted, over what is expected of a normal variable of that rank: without any error but chance the points lie on the diagonal.

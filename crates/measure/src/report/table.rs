@@ -1,6 +1,6 @@
 //! A table of texts.
 
-use super::{html, markdown};
+use super::{csv, html, markdown};
 
 /// Cells of text.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -27,6 +27,12 @@ impl Table {
         markdown::head(&self.columns) + &self.rows.iter().map(|cells| markdown::row(cells)).collect::<String>()
     }
 
+    /// As comma-separated values, the columns' names first.
+    pub fn csv(&self) -> String {
+        let line = |cells: &Vec<String>| cells.iter().map(|cell| csv::field(cell)).collect::<Vec<_>>().join(",") + "\n";
+        std::iter::once(&self.columns).chain(&self.rows).map(line).collect()
+    }
+
     /// The table as an element of HTML, which scrolls where it is too wide.
     pub fn html(&self) -> String {
         let row = |cells: &[String], tag: &str| -> String {
@@ -49,6 +55,7 @@ mod tests {
     fn tables_are_written() {
         let table = Table::new(["a", "b"]).with_rows([vec!["1 < 2".into(), "x|y".into()]]);
         assert_eq!(table.markdown(), "| a | b |\n|---|---|\n| 1 < 2 | x\\|y |\n");
+        assert_eq!(table.csv(), "a,b\n1 < 2,x|y\n");
         let html = table.html();
         assert!(html.contains("<th>a</th><th>b</th>") && html.contains("<td>1 &lt; 2</td><td>x|y</td>"), "{html}");
     }

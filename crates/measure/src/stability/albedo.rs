@@ -1,8 +1,10 @@
 //! Albedos near one in a closed room: what ends a path decides about bias, noise and time.
 
+use super::judge::{certain_bias, up_to};
 use super::rooms::{furnace, furnace_radiance, without_roulette};
+use super::sweep::{Definition, Family, Findings, Sweep};
 use super::trial::Trial;
-use super::{Definition, Findings, Sweep};
+use super::verdict::{Judgement, SURE, Verdict, Worse, place, stretch};
 use crate::Workbench;
 use crate::chart::{Axis, Chart, Point, Series};
 use crate::report::words::{count, deviation, share};
@@ -14,6 +16,7 @@ use luminaire::scene::{Estimator, Extinction};
 /// The sweep over the albedo of a closed room.
 pub const DEFINITION: Definition = Definition {
     name: "albedo",
+    family: Family::Light,
     title: "albedo of a closed room, 0.5 to 0.9999, and beyond the limit of survival",
     run,
 };
@@ -97,6 +100,40 @@ struct Measured {
     rays: f64,
     /// Variance of a sample over the squared truth, times the rays it costs.
     noise: f64,
+}
+
+impl Measured {
+    fn albedo(&self) -> f64 {
+        1.0 - 1.0 / self.x
+    }
+
+    fn judgement(&self) -> (f64, Judgement) {
+        (self.albedo(), Judgement::of_light(self.noise / self.rays, certain_bias(self.ratio, self.error)))
+    }
+}
+
+/// Each termination over all backends, the default first. Beyond the limit of survival the default's variance is infinite, whatever the samples say.
+fn verdicts(all: &[(Backend, Vec<Vec<Measured>>)], beyond: &[Measured]) -> Vec<Verdict> {
+    let of = |(index, termination): (usize, Termination)| {
+        let measured = || all.iter().flat_map(move |(_, of)| &of[index]);
+        let judged: Vec<_> = measured().map(Measured::judgement).collect();
+        let unbounded = beyond.iter().filter(|m| index == 0 && m.albedo() > MAX_SURVIVAL.sqrt());
+        let unbounded = unbounded.map(|m| (m.albedo(), Judgement::Noisy));
+        Verdict::new(termination.name, judged.into_iter().chain(unbounded), Worse::Upwards, evidence(measured()))
+    };
+    terminations().into_iter().enumerate().map(of).collect()
+}
+
+/// From which albedo on a termination is more than 1 % off, and by how much at the largest.
+fn evidence<'a>(measured: impl Iterator<Item = &'a Measured> + Clone) -> String {
+    let off = measured.clone().filter(|m| (m.ratio - 1.0).abs() > 0.01 + SURE * m.error).map(Measured::albedo);
+    let from = off.reduce(f64::min).map_or("never".into(), |albedo| format!("from albedo {} on", place(albedo)));
+    let farthest = |a: &&Measured, b: &&Measured| {
+        a.albedo().total_cmp(&b.albedo()).then((a.ratio - 1.0).abs().total_cmp(&(b.ratio - 1.0).abs()))
+    };
+    measured
+        .max_by(farthest)
+        .map_or(from.clone(), |m| format!("{from}; {} at {}", deviation(m.ratio - 1.0, m.error), place(m.albedo())))
 }
 
 fn measure(
@@ -187,23 +224,16 @@ fn sweep(bench: &Workbench, steps: &Steps) -> Result<Sweep> {
         beyond.extend(points);
     }
     charts.push(cap);
-    Ok(Sweep { charts, findings: findings(&all, &beyond) })
+    let verdicts = verdicts(&all, &beyond);
+    let measured = all.iter().flat_map(|(_, of)| of.iter().flatten()).chain(&beyond);
+    let range = stretch(measured.map(Measured::albedo), Worse::Upwards, "(albedo)");
+    let summary = up_to(&verdicts, "", |end| {
+        format!("Keep albedos at {end} or below, and do without limits of bounces in bright rooms.")
+    });
+    Ok(Sweep { charts, range, verdicts, summary, findings: findings(&all, &beyond) })
 }
 
 fn findings(all: &[(Backend, Vec<Vec<Measured>>)], beyond: &[Measured]) -> Findings {
-    // The bias of each termination at the largest albedo, over all backends the worst.
-    let worst = |termination: usize| {
-        let ends = all.iter().filter_map(|(_, of)| of[termination].last());
-        ends.max_by(|a, b| (a.ratio - 1.0).abs().total_cmp(&(b.ratio - 1.0).abs()))
-    };
-    let bias = |termination: usize| worst(termination).map_or(String::new(), |m| deviation(m.ratio - 1.0, m.error));
-    let first_off = |termination: usize| {
-        let off = |m: &&Measured| (m.ratio - 1.0).abs() > 0.01 + 3.0 * m.error;
-        all.iter().filter_map(|(_, of)| of[termination].iter().find(off)).map(|m| 1.0 - 1.0 / m.x).reduce(f64::min)
-    };
-    let from = |termination: usize| {
-        first_off(termination).map_or("never".to_owned(), |albedo| format!("from albedo {albedo:.4} on"))
-    };
     // Roulette against the truth, in standard errors.
     let sigma = all.iter().flat_map(|(_, of)| of[..2].iter().flatten()).map(|m| ((m.ratio - 1.0) / m.error).abs());
     let sigma = sigma.fold(0.0, f64::max);
@@ -222,19 +252,7 @@ fn findings(all: &[(Backend, Vec<Vec<Measured>>)], beyond: &[Measured]) -> Findi
     let lowest = beyond.iter().map(|m| m.ratio).fold(f64::INFINITY, f64::min);
     let highest = beyond.iter().map(|m| m.ratio).fold(0.0, f64::max);
     Findings {
-        starts: format!(
-            "More than 1 % off: at most {BOUNCES} bounces {} ({} at {top:.4}); literal extinction {} ({}); threshold 1e-4 {} ({}); \
-             roulette by \
-             surface {} and by throughput {} (never more than {sigma:.1} standard errors off).",
-            from(4),
-            bias(4),
-            from(2),
-            bias(2),
-            from(3),
-            bias(3),
-            from(1),
-            from(0),
-        ),
+        starts: format!("More than 1 % off (roulette is never more than {sigma:.1} standard errors off):"),
         how: format!(
             "In a closed room light meets 1 / (1 - albedo) surfaces in the mean. A limit of k bounces leaves 1 - a^(k+2) of the light; \
              literal \

@@ -1,11 +1,13 @@
 //! Light that reaches a floor by way of a mirror or a sharp lobe: what a path tracer without photons misses.
 
+use super::judge::{certain_bias, light, up_to};
 use super::spot::{
     Spot, Tally, chart, irradiance_of_mesh, looking_from, off, over_parallelogram, percent, series, without_roulette,
 };
-use super::{Definition, Findings, Sweep};
+use super::sweep::{Definition, Family, Findings, Sweep};
+use super::verdict::{Judgement, Verdict, Worse, stretch};
 use crate::Workbench;
-use crate::chart::{Axis, Point};
+use crate::chart::{Axis, Point, Series};
 use glam::{Affine3A, DVec3, Vec3};
 use luminaire::Result;
 use luminaire::backend::Backend;
@@ -17,6 +19,7 @@ use std::f64::consts::PI;
 /// The sweep over the lamp's size, in a mirror.
 pub const MIRROR: Definition = Definition {
     name: "caustics",
+    family: Family::Light,
     title: "a floor lit by way of a mirror: side of the lamp, 1 to a point",
     run: |bench| {
         let sides = match bench.long {
@@ -30,6 +33,7 @@ pub const MIRROR: Definition = Definition {
 /// The sweep over the exponent of the lobe in the mirror's place.
 pub const LOBE: Definition = Definition {
     name: "glossy-caustics",
+    family: Family::Light,
     title: "a floor lit by a point luminaire by way of a glossy wall: exponent, 1 to 1e8",
     run: |bench| {
         let steps = if bench.long { 2 } else { 1 };
@@ -117,6 +121,24 @@ pub fn mirror(bench: &Workbench, sides: &[f32], samples: u32) -> Result<Sweep> {
             series.points.push(measure(*backend, LightSampling::Mis)?.share_of(x, by_mirror, straight));
         }
     }
+    // A point is never met, which no number of samples tells: nothing varies.
+    let judge = |method: usize| {
+        let point = |p: &Point| (p.x, Judgement::of_share(certain_bias(p.y, p.error.unwrap_or(0.0))));
+        let of_point = shares[method].points.iter().filter(|p| p.x == 0.0).map(point);
+        let sized = |s: &Series| Series {
+            name: s.name.clone(),
+            points: s.points.iter().filter(|p| p.x > 0.0).copied().collect(),
+        };
+        let gpu = on_gpu.iter().filter(|_| method == 1).map(sized);
+        let found: Vec<Series> = std::iter::once(sized(&shares[method])).chain(gpu).collect();
+        let verdict =
+            light(methods[method].0, &[&sized(&noise[method])], &found.iter().collect::<Vec<_>>(), Worse::Downwards);
+        let ranges =
+            verdict.ranges.iter().flat_map(|range| [(range.from, range.judgement), (range.to, range.judgement)]);
+        Verdict::new(verdict.method.clone(), ranges.chain(of_point), Worse::Downwards, verdict.evidence.clone())
+    };
+    let verdicts = vec![judge(1), judge(0)];
+    let range = stretch(sides.iter().map(|side| f64::from(*side)), Worse::Downwards, "of the distance");
     // In proportion to one over the area: as a number that does not depend on the side.
     let of_area = noise[1].points.iter().filter(|p| p.x > 0.0 && !p.y.is_nan()).map(|p| p.y * p.x * p.x);
     let factor = of_area.fold(0.0, f64::max);
@@ -155,7 +177,8 @@ pub fn mirror(bench: &Workbench, sides: &[f32], samples: u32) -> Result<Sweep> {
         chart("energy", "Light by way of a mirror", SIDE, share, shares),
         chart("noise", "Noise of a floor that is lit by way of a mirror, too", SIDE, variance("mirror"), noise),
     ];
-    Ok(Sweep { charts, findings })
+    let summary = "Give every light a size, the larger the better: no estimator finds a point in a mirror.".into();
+    Ok(Sweep { charts, range, verdicts, summary, findings })
 }
 
 /// A point luminaire and a glossy wall: the light that comes straight, and by way of the wall.
@@ -198,6 +221,15 @@ pub fn lobe(bench: &Workbench, exponents: &[f32], samples: u32) -> Result<Sweep>
             noise[i].points.push(spot.noise_of(exponent.into(), by_wall, straight));
         }
     }
+    let all = |series: &[Series]| -> Verdict {
+        let noise: Vec<_> = noise.iter().collect();
+        light("both (MIS)", &noise, &series.iter().collect::<Vec<_>>(), Worse::Upwards)
+    };
+    let verdicts = vec![all(&shares)];
+    let range = stretch(exponents.iter().map(|exponent| f64::from(*exponent)), Worse::Upwards, "(exponent)");
+    let summary = up_to(&verdicts, "both (MIS)", |end| {
+        format!("Caustics by way of a lobe are even up to an exponent of {end}, and fireflies beyond.")
+    });
     // Found for certain: with a standard error below a tenth.
     let certain = |p: &&Point| p.error.is_some_and(|error| error < 0.1);
     let last = shares[0].points.iter().take_while(certain).last().map_or(0.0, |p| p.x);
@@ -236,5 +268,5 @@ pub fn lobe(bench: &Workbench, exponents: &[f32], samples: u32) -> Result<Sweep>
         chart("energy", "Light of a point luminaire by way of a glossy wall", EXPONENT, share, shares),
         chart("noise", "Noise of a floor that is lit by way of a glossy wall", EXPONENT, variance("wall"), noise),
     ];
-    Ok(Sweep { charts, findings })
+    Ok(Sweep { charts, range, verdicts, summary, findings })
 }

@@ -1,10 +1,12 @@
 //! How far from the origin a scene may lie.
 
 use super::geometry::{
-    COMPUTE_BVH, RAY_QUERY, Stand, T_MIN, Worse, add, baked, chart, decades, describe, distance_error, lost, named,
-    per_million, placed, rays_to_faces, rays_to_features, value,
+    COMPUTE_BVH, RAY_QUERY, Stand, T_MIN, add, baked, chart, decades, distance_error, lost, named, per_million, placed,
+    rays_to_faces, rays_to_features, value,
 };
-use super::{Definition, Findings, Sweep};
+use super::judge::{geometric, up_to};
+use super::sweep::{Definition, Family, Findings, Sweep};
+use super::verdict::{Worse, stretch};
 use crate::Workbench;
 use crate::chart::{Axis, Chart, Point};
 use crate::rays::Random;
@@ -13,8 +15,12 @@ use luminaire::Result;
 use luminaire::scene::build::icosphere;
 
 /// The sweep.
-pub const DEFINITION: Definition =
-    Definition { name: "distance", title: "Distance of the scene from the origin, 0.1 to 1e7 of its size", run };
+pub const DEFINITION: Definition = Definition {
+    name: "distance",
+    family: Family::Geometry,
+    title: "Distance of the scene from the origin, 0.1 to 1e7 of its size",
+    run,
+};
 
 fn run(bench: &Workbench) -> Result<Sweep> {
     sweep(bench, &decades(-1, 7, bench), 30_000)
@@ -78,15 +84,19 @@ pub fn sweep(bench: &Workbench, distances: &[f64], rays: usize) -> Result<Sweep>
         }
         charts.extend([lost_chart, error, self_hits, escapes]);
     }
+    let (errors, counts): (Vec<&Chart>, Vec<_>) = charts.iter().partition(|chart| chart.name.starts_with("error"));
+    let verdicts = geometric(&counts, &errors, Worse::Upwards);
+    let range = stretch(distances.iter().copied(), Worse::Upwards, "sizes from the origin");
+    let summary =
+        up_to(&verdicts, COMPUTE_BVH, |end| format!("Keep a scene within {end} of its own sizes from the origin."));
     let findings = findings(&charts);
-    Ok(Sweep { charts, findings })
+    Ok(Sweep { charts, range, verdicts, summary, findings })
 }
 
 fn findings(charts: &[Chart]) -> Findings {
-    let counts = charts.iter().filter(|chart| !chart.name.starts_with("error"));
     let error = |way: &str, method: &str| value(named(charts, &format!("error-{way}")), method, 1e4);
     Findings {
-        starts: describe(counts, 0.0, Worse::Upwards),
+        starts: String::new(),
         how: format!(
             "Single precision has 24 bits: 1e5 sizes from the origin a coordinate is good to 0.8 % of the size, at 1e7 the body \
              is one point. Corners that are placed there are rounded once, and the body stays closed as long as it has a volume; \

@@ -1,9 +1,9 @@
 //! Rays at edges and vertices, from straight on to grazing.
 
-use super::geometry::{
-    COMPUTE_BVH, Stand, Worse, add, baked, chart, decades, describe, distance_error, named, per_million, value,
-};
-use super::{Definition, Findings, Sweep};
+use super::geometry::{COMPUTE_BVH, Stand, add, baked, chart, decades, distance_error, named, per_million, value};
+use super::judge::{geometric, up_to};
+use super::sweep::{Definition, Family, Findings, Sweep};
+use super::verdict::{Worse, stretch};
 use crate::Workbench;
 use crate::chart::{Axis, Chart, Point};
 use crate::rays::{Random, Ray};
@@ -15,6 +15,7 @@ use luminaire::scene::build::mesh;
 /// The sweep.
 pub const DEFINITION: Definition = Definition {
     name: "edges",
+    family: Family::Geometry,
     title: "Rays at edges and vertices, at angles to the surface from 90 to 1e-7 degrees",
     run,
 };
@@ -93,8 +94,15 @@ pub fn sweep(bench: &Workbench, angles: &[f64], rays: usize) -> Result<Sweep> {
         }
         charts.extend([lost, error]);
     }
+    // The error along the ray is left out: a grazing ray's grows without that anything is seen of it.
+    let counts: Vec<_> = charts.iter().filter(|chart| chart.name.starts_with("lost")).collect();
+    let verdicts = geometric(&counts, &[], Worse::Downwards);
+    let range = stretch(angles.iter().copied(), Worse::Downwards, "degrees to the surface");
+    let summary = up_to(&verdicts, COMPUTE_BVH, |end| {
+        format!("If edges look dotted, take the compute BVH: it loses nothing down to {end} degrees.")
+    });
     let findings = findings(&charts);
-    Ok(Sweep { charts, findings })
+    Ok(Sweep { charts, range, verdicts, summary, findings })
 }
 
 /// Rays from inside the box to vertices and edges of its floor, well away from the walls.
@@ -128,8 +136,7 @@ fn findings(charts: &[Chart]) -> Findings {
     let error = |x: f64| value(named(charts, "error-turned"), COMPUTE_BVH, x);
     Findings {
         starts: format!(
-            "{} The error along the ray, turned: {} at 1 degree, {} at 1e-3, {} at 1e-5.",
-            describe(charts.iter().filter(|chart| chart.name.starts_with("lost")), 0.0, Worse::Downwards),
+            "The error along the ray, turned: {} at 1 degree, {} at 1e-3, {} at 1e-5. Rays that are lost:",
             error(1.0),
             error(1e-3),
             error(1e-5)

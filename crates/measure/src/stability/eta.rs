@@ -1,8 +1,10 @@
 //! Glass of all indices of refraction.
 
-use super::geometry::{COMPUTE_BVH, REFERENCE, Worse, add, chart, describe, name_of, named, value};
+use super::geometry::{COMPUTE_BVH, REFERENCE, add, chart, name_of, named, value};
 use super::glass::{AroundGlass, around_glass, glass};
-use super::{Definition, Findings, Sweep};
+use super::judge::{everywhere, geometric};
+use super::sweep::{Definition, Family, Findings, Sweep};
+use super::verdict::{Worse, stretch};
 use crate::Workbench;
 use crate::chart::{Axis, Chart, Point};
 use crate::rays::Random;
@@ -14,8 +16,12 @@ use luminaire::reference::impulse::{fresnel, refract};
 use luminaire::scene::build::{add as add_mesh, cube, empty, icosphere};
 
 /// The sweep.
-pub const DEFINITION: Definition =
-    Definition { name: "eta", title: "Glass with an index of refraction of 1.0001 to 4", run };
+pub const DEFINITION: Definition = Definition {
+    name: "eta",
+    family: Family::Geometry,
+    title: "Glass with an index of refraction of 1.0001 to 4",
+    run,
+};
 
 const BY_SINE_OUTSIDE: &str = "f32 by the sine, from outside";
 const BY_SINE_INSIDE: &str = "f32 by the sine, from inside";
@@ -112,8 +118,24 @@ pub fn sweep(bench: &Workbench, etas: &[f64], angles: usize, samples: u32) -> Re
         }
     }
     let charts = vec![reflectance, direction, furnace, longest, trapped];
+    // The axis is the index less 1, by which it is hard; the page has the index.
+    let by_index: Vec<Chart> = charts[..3].iter().cloned().map(index_itself).collect();
+    let mut verdicts = geometric(&[], &[&by_index[2]], Worse::Upwards);
+    verdicts.extend(geometric(&[], &[&by_index[0], &by_index[1]], Worse::Downwards));
+    let range = stretch(etas.iter().copied(), Worse::Upwards, "(index)");
+    let summary = everywhere(
+        &verdicts,
+        COMPUTE_BVH,
+        "Any index is safe; light that starts inside of glass may never leave: limit the bounces.",
+    );
     let findings = findings(&charts);
-    Ok(Sweep { charts, findings })
+    Ok(Sweep { charts, range, verdicts, summary, findings })
+}
+
+/// The same chart over the index, not over the index less 1.
+fn index_itself(mut chart: Chart) -> Chart {
+    chart.series.iter_mut().flat_map(|series| &mut series.points).for_each(|point| point.x += 1.0);
+    chart
 }
 
 /// Directions over +z: even in the angle, and crowded at grazing and at the critical angle.
@@ -149,9 +171,8 @@ fn findings(charts: &[Chart]) -> Findings {
     let inside = format!("{COMPUTE_BVH}, from inside");
     Findings {
         starts: format!(
-            "{} {} Of the light that starts inside a cube, in the directions of the picture, {} never leaves at 1.5 (reference: {}).",
-            describe([named(charts, "reflectance"), named(charts, "direction")], 1e-4, Worse::Downwards),
-            describe([named(charts, "furnace")], 1e-6, Worse::Upwards),
+            "Of the light that starts inside a cube, in the directions of the picture, {} never leaves at an index of 1.5 (reference: {}). \
+             Energy, and below it Fresnel's formulas by themselves:",
             at("trapped", COMPUTE_BVH, 0.5),
             at("trapped", REFERENCE, 0.5)
         ),

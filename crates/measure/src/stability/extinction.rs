@@ -1,9 +1,11 @@
 //! What ends a path too early: thresholds, limits and roulette without weights, their bias against the work they save.
 
+use super::judge::up_to;
 use super::rooms::{furnace, furnace_radiance, room, without_roulette};
 use super::series::above_from;
+use super::sweep::{Definition, Family, Findings, Sweep};
 use super::trial::Trial;
-use super::{Definition, Findings, Sweep};
+use super::verdict::{Judgement, SURE, Verdict, Worse, place, stretch};
 use crate::Workbench;
 use crate::chart::{Axis, Chart, Point, Series};
 use crate::report::words::{deviation, share};
@@ -12,9 +14,15 @@ use luminaire::backend::Backend;
 use luminaire::scene::{Estimator, Extinction};
 
 /// The sweep over thresholds and other ways to end a path.
-pub const DEFINITION: Definition =
-    Definition { name: "extinction", title: "the albedo threshold, 1e-1 to 1e-6, and literal extinction", run };
+pub const DEFINITION: Definition = Definition {
+    name: "extinction",
+    family: Family::Light,
+    title: "the albedo threshold, 1e-1 to 1e-6, and literal extinction",
+    run,
+};
 
+/// The threshold, as a method.
+const THRESHOLD: &str = "threshold";
 /// A closed room with an exact answer.
 const FURNACE_ALBEDO: f32 = 0.8;
 /// Paths of the room's truth: its brightest walls leave 0.75^48 = 1e-6 of the last bounce, its mean walls far less.
@@ -201,18 +209,46 @@ fn sweep(bench: &Workbench, steps: &Steps) -> Result<Sweep> {
     let furnaces = furnaces(bench, steps)?;
     let rooms =
         bench.backends().into_iter().map(|backend| measure(bench, backend, steps)).collect::<Result<Vec<_>>>()?;
+    let verdicts = verdicts(steps, &rooms);
+    let range = stretch(steps.thresholds.iter().copied(), Worse::Upwards, "(threshold)");
+    let summary = up_to(&verdicts, THRESHOLD, |end| {
+        format!("Stay with re-weighted roulette; thresholds above {end} darken, literal extinction always does.")
+    });
     let findings = findings(steps, &furnaces, &rooms);
     let mut charts = vec![furnaces];
     charts.extend(rooms.iter().map(bias_chart));
     charts.extend(rooms.first().map(|room| time_chart(steps, room)));
-    Ok(Sweep { charts, findings })
+    Ok(Sweep { charts, range, verdicts, summary, findings })
+}
+
+/// Each way to end paths in the coloured room over all backends, the default first.
+fn verdicts(steps: &Steps, rooms: &[Room]) -> Vec<Verdict> {
+    let judge = |m: &Measured| Judgement::of_light(m.variance, (m.bias.abs() - SURE * m.error).max(0.0));
+    let without_range = |method: &str, of: fn(&Room) -> &Measured| {
+        let (first, last) = (steps.thresholds[0], steps.thresholds[steps.thresholds.len() - 1]);
+        let judged = rooms.iter().flat_map(|room| [first, last].map(|x| (x, judge(of(room)))));
+        let found = of(&rooms[0]);
+        Verdict::new(method, judged, Worse::Upwards, deviation(found.bias, found.error))
+    };
+    let at = |x: &f64, m: &Measured| format!("{} at {}", share(m.bias.abs()), place(*x));
+    let over = |method: &str, places: Vec<f64>, worse: Worse, of: fn(&Room) -> &[Measured]| {
+        let judged = rooms.iter().flat_map(|room| places.iter().copied().zip(of(room).iter().map(judge)));
+        let found = places.iter().zip(of(&rooms[0])).map(|(x, m)| at(x, m)).collect::<Vec<_>>().join(", ");
+        Verdict::new(method, judged, worse, found)
+    };
+    let bounces = steps.bounces.iter().map(|bounces| f64::from(*bounces)).collect();
+    vec![
+        without_range("roulette by throughput", |room| &room.throughput),
+        without_range("roulette by surface", |room| &room.surface),
+        without_range("literal extinction", |room| &room.literal),
+        over(THRESHOLD, steps.thresholds.clone(), Worse::Upwards, |room| &room.thresholds),
+        over("limit of bounces", bounces, Worse::Upwards, |room| &room.bounces),
+    ]
 }
 
 fn findings(steps: &Steps, furnaces: &Chart, rooms: &[Room]) -> Findings {
     let reference = &rooms[0];
-    let percent = |m: &Measured| deviation(m.bias, m.error);
     let last = steps.thresholds.len() - 1;
-    let loses = |m: &Measured| share(m.bias.abs());
     let sigma =
         rooms.iter().flat_map(|r| [&r.surface, &r.throughput]).map(|m| (m.bias / m.error).abs()).fold(0.0, f64::max);
     // Work for 1 % of error, where a method gets there at all.
@@ -226,25 +262,13 @@ fn findings(steps: &Steps, furnaces: &Chart, rooms: &[Room]) -> Findings {
     };
     let worst = furnaces.series[1..].iter().flat_map(|s| s.points.iter().zip(&furnaces.series[0].points));
     let worst = worst.map(|(found, closed)| (found.y - closed.y).abs()).fold(0.0, f64::max);
-    let some = steps.bounces.len() / 2;
-    let below = above_from(&furnaces.series[0], 1e-3)
-        .map_or("never".to_owned(), |x| format!("from a threshold of {} on", share(x)));
+    let below =
+        above_from(&furnaces.series[0], 1e-3).map_or("never".to_owned(), |x| format!("from one of {} on", share(x)));
     Findings {
         starts: format!(
-            "Literal extinction: at once ({} in the coloured room, 1 / (1 + albedo) of the light in a closed one). Threshold: {below} \
-             more than 0.1 % in the \
-             closed room; in the coloured one {} at {:.0e} and {} at {:.0e}. At most {} bounces: {}. Re-weighted roulette: never ({} by \
-             throughput, {} by surface; \
-             over all backends at most {sigma:.1} standard errors).",
-            percent(&reference.literal),
-            loses(&reference.thresholds[last]),
-            steps.thresholds[last],
-            loses(&reference.thresholds[0]),
-            steps.thresholds[0],
-            steps.bounces[some],
-            loses(&reference.bounces[some]),
-            percent(&reference.throughput),
-            percent(&reference.surface),
+            "In a closed room literal extinction leaves 1 / (1 + albedo) of the light at once, and a threshold takes more than 0.1 % \
+             {below}. Re-weighted roulette is never more than {sigma:.1} standard errors off on any backend. Of the light of the coloured \
+             room is missing:",
         ),
         how: format!(
             "What is cut off is missing, always on the dark side, and no number of samples brings it back. Measured on every backend in \

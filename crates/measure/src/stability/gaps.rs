@@ -1,9 +1,11 @@
 //! Surfaces close to each other.
 
-use super::geometry::{Departures, Stand, T_MIN, Worse, add, chart, decades, describe, per_million};
-use super::{Definition, Findings, Sweep};
+use super::geometry::{COMPUTE_BVH, Departures, Stand, T_MIN, add, chart, decades, per_million};
+use super::judge::{geometric, up_to};
+use super::sweep::{Definition, Family, Findings, Sweep};
+use super::verdict::{Worse, stretch};
 use crate::Workbench;
-use crate::chart::{Axis, Chart};
+use crate::chart::Axis;
 use crate::rays::{Random, Ray};
 use glam::{Affine3A, Vec3};
 use luminaire::Result;
@@ -13,7 +15,7 @@ use luminaire::scene::build::{self, empty, matte, quad};
 
 /// The sweep.
 pub const DEFINITION: Definition =
-    Definition { name: "gaps", title: "Two walls from 0.1 to 1e-8 of their size apart", run };
+    Definition { name: "gaps", family: Family::Geometry, title: "Two walls from 0.1 to 1e-8 of their size apart", run };
 
 fn run(bench: &Workbench) -> Result<Sweep> {
     sweep(bench, &decades(-8, -1, bench), 40_000)
@@ -81,8 +83,12 @@ pub fn sweep(bench: &Workbench, gaps: &[f64], rays: usize) -> Result<Sweep> {
         }
         charts.extend([leaks, self_hits, order]);
     }
-    let findings = findings(&charts);
-    Ok(Sweep { charts, findings })
+    let verdicts = geometric(&charts.iter().collect::<Vec<_>>(), &[], Worse::Downwards);
+    let range = stretch(gaps.iter().copied(), Worse::Downwards, "of the size");
+    let summary = up_to(&verdicts, COMPUTE_BVH, |end| {
+        format!("Keep surfaces {end} of their size apart, or leave out the hidden one.")
+    });
+    Ok(Sweep { charts, range, verdicts, summary, findings: findings() })
 }
 
 /// Rays from the middle of the gap down to the floor, up to 70 degrees off its normal.
@@ -109,9 +115,9 @@ fn rays_from_below(map: Affine3A, n: usize) -> Vec<Ray> {
     (0..n).map(ray).collect()
 }
 
-fn findings(charts: &[Chart]) -> Findings {
+fn findings() -> Findings {
     Findings {
-        starts: describe(charts, 0.0, Worse::Downwards),
+        starts: String::new(),
         how: "A ray leaves a surface some way off it, lest it meets it again. A wall that is nearer than that is passed. A fixed distance passes \
              it at the distance itself, and at slanting angles before. The bound of the rounding is about 1e-6 of the largest of the \
              surface's size and its coordinates; nearer surfaces than that have corners that round into each other."

@@ -236,56 +236,6 @@ pub(super) fn number(x: f64) -> String {
     }
 }
 
-/// Where a line first exceeds `limit`, coming from where it should do best.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Worse {
-    /// Large values of x are hard.
-    Upwards,
-    /// Small values of x are hard.
-    Downwards,
-}
-
-/// Charts in words: which methods stay at or below `limit` in all of them, and for the others from where on they exceed it in one, by how much there
-/// and in which.
-pub(super) fn describe<'a>(charts: impl IntoIterator<Item = &'a Chart>, limit: f64, worse: Worse) -> String {
-    // Methods in the order of the charts, each with the first point beyond the limit and its chart.
-    let mut methods: Vec<(&str, Option<(Point, &Chart)>)> = Vec::new();
-    for chart in charts {
-        for series in &chart.series {
-            let mut beyond = series.points.iter().copied().filter(|p| p.y > limit);
-            let first = if worse == Worse::Upwards { beyond.next() } else { beyond.next_back() };
-            let found = first.map(|point| (point, chart));
-            let earlier = |a: &Point, b: &Point| match worse {
-                Worse::Upwards => a.x < b.x || (a.x == b.x && a.y > b.y),
-                Worse::Downwards => a.x > b.x || (a.x == b.x && a.y > b.y),
-            };
-            match methods.iter_mut().find(|(name, _)| *name == series.name) {
-                None => methods.push((&series.name, found)),
-                Some((_, known)) => {
-                    if let Some((point, _)) = found
-                        && known.is_none_or(|(first, _)| earlier(&point, &first))
-                    {
-                        *known = found;
-                    }
-                }
-            }
-        }
-    }
-    let fine: Vec<_> = methods.iter().filter(|(_, first)| first.is_none()).map(|(name, _)| *name).collect();
-    let mut words: Vec<String> = methods
-        .iter()
-        .filter_map(|(name, first)| {
-            let (point, chart) = first.as_ref()?;
-            let what = chart.name.replace('-', " ");
-            Some(format!("{name} from {} on ({what}: {} {})", number(point.x), number(point.y), chart.y.label))
-        })
-        .collect();
-    if !fine.is_empty() {
-        words.push(format!("nowhere: {}", fine.join(", ")));
-    }
-    format!("{}.", words.join("; "))
-}
-
 /// The chart of a name.
 pub(super) fn named<'a>(charts: &'a [Chart], name: &str) -> &'a Chart {
     charts.iter().find(|chart| chart.name == name).expect("the sweep has made this chart")

@@ -1,9 +1,11 @@
 //! Bodies of glass that touch, or nearly.
 
-use super::geometry::{Worse, add, chart, decades, describe, name_of};
-use super::{Definition, Findings, Sweep};
+use super::geometry::{COMPUTE_BVH, add, chart, decades, name_of};
+use super::judge::{geometric, up_to};
+use super::sweep::{Definition, Family, Findings, Sweep};
+use super::verdict::{Worse, stretch};
 use crate::Workbench;
-use crate::chart::{Axis, Chart, Point};
+use crate::chart::{Axis, Point};
 use crate::statistics::Estimate;
 use glam::{Affine3A, Vec3};
 use luminaire::Result;
@@ -13,8 +15,12 @@ use luminaire::scene::build::{add as add_mesh, cube, empty, estimator, icosphere
 use luminaire::scene::{Environment, Extinction, Material, Scene};
 
 /// The sweep.
-pub const DEFINITION: Definition =
-    Definition { name: "touching-glass", title: "Bodies of glass, 0.1 to 1e-8 of their size apart", run };
+pub const DEFINITION: Definition = Definition {
+    name: "touching-glass",
+    family: Family::Geometry,
+    title: "Bodies of glass, 0.1 to 1e-8 of their size apart",
+    run,
+};
 
 /// Glass that absorbs nothing.
 pub(super) fn glass(eta: f64) -> Material {
@@ -110,18 +116,20 @@ pub fn sweep(bench: &Workbench, gaps: &[f64], samples: u32) -> Result<Sweep> {
         }
         charts.push(chart);
     }
-    let findings = findings(&charts, &touching);
-    Ok(Sweep { charts, findings })
+    let verdicts = geometric(&[], &charts.iter().collect::<Vec<_>>(), Worse::Downwards);
+    let range = stretch(gaps.iter().copied(), Worse::Downwards, "of the size");
+    let summary = up_to(&verdicts, COMPUTE_BVH, |end| {
+        format!("Leave a gap of at least {end} of the size between bodies of glass.")
+    });
+    Ok(Sweep { charts, range, verdicts, summary, findings: findings(&touching) })
 }
 
-fn findings(charts: &[Chart], touching: &[(&str, &str, f64)]) -> Findings {
-    let touching: Vec<_> =
-        touching.iter().map(|(scene, method, mean)| format!("{scene}, {method}: {:.4}", mean)).collect();
+fn findings(touching: &[(&str, &str, f64)]) -> Findings {
+    let touching: String =
+        touching.iter().map(|(scene, method, mean)| format!("| {scene} | {method} | {mean:.4} |\n")).collect();
     Findings {
         starts: format!(
-            "{} With no gap at all, where 1 is right: {}.",
-            describe(charts, 1e-3, Worse::Downwards),
-            touching.join("; ")
+            "With no gap at all, where a mean of 1 is right:\n\n| bodies | method | mean |\n|---|---|---|\n{touching}\nWith a gap:"
         ),
         how: "Of two surfaces in one place a ray meets one, leaves it by its rounding bound, and is past the other. It then takes itself to be outside of a body \
              in which it is, and the factors of the squared index (2.25 for glass) no longer cancel: such a path brings too much light, or too little. In \

@@ -1,9 +1,11 @@
 //! Glossy lobes from flat to mirror-like: who finds the light, and whether any is lost or made.
 
+use super::judge::{everywhere, light};
 use super::spot::{
     Spot, Tally, chart, looking_from, noise_axis, off, over_parallelogram, percent, series, without_roulette,
 };
-use super::{Definition, Findings, Sweep};
+use super::sweep::{Definition, Family, Findings, Sweep};
+use super::verdict::{Verdict, Worse, place, stretch};
 use crate::Workbench;
 use crate::chart::{Axis, Point, Series};
 use glam::{Affine3A, DVec3, Vec3};
@@ -17,6 +19,7 @@ use std::f64::consts::TAU;
 /// The sweep over the exponent.
 pub const DEFINITION: Definition = Definition {
     name: "glossy",
+    family: Family::Light,
     title: "exponent of a glossy plate, 0 to 1e8: under an even sky, and with a small, a middling and a large lamp in it",
     run,
 };
@@ -29,7 +32,9 @@ const LAMPS: [(&str, f64); 3] = [("small", 0.003), ("middling", 0.03), ("large",
 const VARNISH: f32 = 0.05;
 
 /// How light is found under the lamp.
-const METHODS: [&str; 4] = ["light sampling", "BSDF sampling", "both (MIS)", "both, with roulette"];
+const METHODS: [&str; 4] = ["light sampling", "BSDF sampling", "both (MIS)", WITH_ROULETTE];
+/// The default.
+const WITH_ROULETTE: &str = "both, with roulette";
 
 /// Which points.
 pub struct Steps {
@@ -159,6 +164,13 @@ pub fn sweep(bench: &Workbench, steps: &Steps) -> Result<Sweep> {
             }
         }
     }
+    let verdicts = verdicts(&noise, &[&sky_mis[..], &lamp_mis].concat(), &sky_bsdf);
+    let range = stretch(steps.exponents.iter().map(|exponent| f64::from(*exponent)), Worse::Upwards, "(exponent)");
+    let summary = everywhere(
+        &verdicts,
+        WITH_ROULETTE,
+        "The defaults find every highlight; those of dark sharp plates stay grainy longest.",
+    );
     let findings = findings(&sky_even, &[&sky_bsdf[..], &sky_mis, &lamp_mis].concat(), &noise, &tally);
     let energy: Vec<Series> = [sky_even, sky_bsdf, sky_mis, lamp_mis].concat();
     const EXPONENT: &str = "glossy exponent";
@@ -169,23 +181,36 @@ pub fn sweep(bench: &Workbench, steps: &Steps) -> Result<Sweep> {
         let title = format!("Noise of a glossy plate that mirrors a {name} lamp ({half} of its distance)");
         charts.push(chart(&format!("noise-{name}-lamp"), &title, EXPONENT, noise_axis(), series));
     }
-    Ok(Sweep { charts, findings })
+    Ok(Sweep { charts, range, verdicts, summary, findings })
 }
 
-fn findings(even: &[Series], kept: &[Series], noise: &[Vec<Series>], tally: &Tally) -> Findings {
-    // A method fails where a sample varies by more than its mean, and ten times as much as by the best method.
-    let fails = |lamp: usize, method: usize| -> Vec<f64> {
-        let at = |m: usize, i: usize| Some(noise[lamp][m].points[i].y).filter(|y| !y.is_nan()).unwrap_or(f64::INFINITY);
-        let points = &noise[lamp][method].points;
+/// The default first. With roulette the light is that of both without it, of which every backend was measured.
+fn verdicts(noise: &[Vec<Series>], both: &[Series], bsdf: &[Series]) -> Vec<Verdict> {
+    let of = |method: usize, shares: &[Series]| {
+        let variances: Vec<_> = noise.iter().map(|lamp| &lamp[method]).collect();
+        let verdict = light(METHODS[method], &variances, &shares.iter().collect::<Vec<_>>(), Worse::Upwards);
+        Verdict { evidence: grainy(noise, method), ..verdict }
+    };
+    vec![of(3, both), of(2, both), of(0, &[]), of(1, bsdf)]
+}
+
+/// Where a sample varies by more than its mean, and ten times as much as by the best method, in words.
+fn grainy(noise: &[Vec<Series>], method: usize) -> String {
+    let fails = |lamp: &[Series]| -> Vec<f64> {
+        let at = |m: usize, i: usize| Some(lamp[m].points[i].y).filter(|y| !y.is_nan()).unwrap_or(f64::INFINITY);
+        let points = &lamp[method].points;
         let best = |i: usize| (0..3).map(|m| at(m, i)).fold(f64::INFINITY, f64::min);
         (0..points.len()).filter(|&i| at(method, i) > (10.0 * best(i)).max(1.0)).map(|i| points[i].x).collect()
     };
-    let in_words = |lamp: usize, method: usize| match fails(lamp, method)[..] {
-        [] => format!("nowhere with the {} lamp", LAMPS[lamp].0),
-        [only] => format!("at {only:e} with the {} lamp", LAMPS[lamp].0),
-        [first, .., last] => format!("from {first:e} to {last:e} with the {} lamp", LAMPS[lamp].0),
+    let in_words = |(lamp, (name, _)): (&Vec<Series>, (&str, f64))| match fails(lamp)[..] {
+        [] => format!("{name}: nowhere"),
+        [only] => format!("{name}: at {}", place(only)),
+        [first, .., last] => format!("{name}: {} to {}", place(first), place(last)),
     };
-    let all = |method: usize| (0..LAMPS.len()).map(|lamp| in_words(lamp, method)).collect::<Vec<_>>().join(", ");
+    noise.iter().zip(LAMPS).map(in_words).collect::<Vec<_>>().join("; ")
+}
+
+fn findings(even: &[Series], kept: &[Series], noise: &[Vec<Series>], tally: &Tally) -> Findings {
     let highest = |method: usize| {
         let points = noise.iter().flat_map(|lamp| &lamp[method].points);
         points.map(|p| p.y).filter(|y| !y.is_nan()).fold(0.0, f64::max)
@@ -194,12 +219,8 @@ fn findings(even: &[Series], kept: &[Series], noise: &[Vec<Series>], tally: &Tal
     let up_to = |limit: f64| kept.iter().map(|s| off(s, 0.0..=limit)).fold(0.0, f64::max);
     Findings {
         starts: format!(
-            "A sample varies by more than its mean, and ten times as much as by the best method: by light sampling alone {}; by BSDF sampling alone {}; by both {}; \
-             by both with roulette {}. Cosine sampling of the same plate {}.",
-            all(0),
-            all(1),
-            all(2),
-            all(3),
+            "Cosine sampling of the plate under the sky {}. Where a sample varies by more than its mean, and ten times as much as by the best \
+             method, with the small, the middling and the large lamp:",
             blind.map_or("finds the light at every exponent".into(), |x| format!("loses more than half of it from {x:e} on")),
         ),
         how: "By noise, not by bias: a sharp lobe is rarely met by a point on a large lamp or by a direction that ignores it, a small \

@@ -1,10 +1,12 @@
 //! Instances that are stretched, mirrored and sheared.
 
 use super::geometry::{
-    COMPUTE_BVH, RAY_QUERY, Stand, Worse, add, chart, decades, describe, distance_error, lost, named, per_million,
-    placed, rays_to_faces, rays_to_features, value,
+    COMPUTE_BVH, RAY_QUERY, Stand, add, chart, decades, distance_error, lost, named, per_million, placed,
+    rays_to_faces, rays_to_features, value,
 };
-use super::{Definition, Findings, Sweep};
+use super::judge::{geometric, up_to};
+use super::sweep::{Definition, Family, Findings, Sweep};
+use super::verdict::{Worse, stretch};
 use crate::Workbench;
 use crate::chart::{Axis, Chart, Point};
 use crate::rays::{Random, Ray};
@@ -16,8 +18,12 @@ use luminaire::scene::build::icosphere;
 use rayon::prelude::*;
 
 /// The sweep.
-pub const DEFINITION: Definition =
-    Definition { name: "instances", title: "Instances stretched, mirrored and sheared by 1 to 1e6", run };
+pub const DEFINITION: Definition = Definition {
+    name: "instances",
+    family: Family::Geometry,
+    title: "Instances stretched, mirrored and sheared by 1 to 1e6",
+    run,
+};
 
 /// A way to leave surfaces that is not the kernel's.
 const BY_COORDINATES: &str = "bound by coordinates";
@@ -87,8 +93,14 @@ pub fn sweep(bench: &Workbench, factors: &[f64], rays: usize) -> Result<Sweep> {
         }
         charts.extend([lost_chart, error, self_hits, escapes]);
     }
+    let (errors, counts): (Vec<&Chart>, Vec<_>) = charts.iter().partition(|chart| chart.name.starts_with("error"));
+    let verdicts = geometric(&counts, &errors, Worse::Upwards);
+    let range = stretch(factors.iter().copied(), Worse::Upwards, ": 1");
+    let summary = up_to(&verdicts, COMPUTE_BVH, |end| {
+        format!("Flatten a body by more than {end} in its mesh, not by its instance: its rim leaks light.")
+    });
     let findings = findings(&charts);
-    Ok(Sweep { charts, findings })
+    Ok(Sweep { charts, range, verdicts, summary, findings })
 }
 
 /// Rays that leave a face inwards and get out if they start beyond a bound of their rounding in each coordinate, carried through the transform and back by
@@ -124,8 +136,7 @@ fn findings(charts: &[Chart]) -> Findings {
     let errors = named(charts, "error-stretched");
     Findings {
         starts: format!(
-            "{} Error along the ray, compute BVH: {} at 1 : 100, {} at 1 : 1e4.",
-            describe(charts.iter().filter(|chart| !chart.name.starts_with("error")), 0.0, Worse::Upwards),
+            "Error along the ray, compute BVH: {} at 1 : 100, {} at 1 : 1e4. The first failures:",
             value(errors, COMPUTE_BVH, 100.0),
             value(errors, COMPUTE_BVH, 1e4)
         ),

@@ -1,9 +1,11 @@
 //! Very many luminaires, instances and bounces: what they cost, and what they do to the error.
 
+use super::judge::{light, up_to};
 use super::rooms::{furnace, without_roulette};
 use super::series::largest;
+use super::sweep::{Definition, Family, Findings, Sweep};
 use super::trial::Trial;
-use super::{Definition, Findings, Sweep};
+use super::verdict::{Verdict, Worse, stretch};
 use crate::Workbench;
 use crate::chart::{Axis, Chart, Point, Series};
 use crate::report::words::{count, share};
@@ -17,8 +19,12 @@ use luminaire::scene::{
 };
 
 /// The sweep over numbers of things.
-pub const DEFINITION: Definition =
-    Definition { name: "many", title: "luminaires, instances and bounces, 1 to 1e5 of each", run };
+pub const DEFINITION: Definition = Definition {
+    name: "many",
+    family: Family::Light,
+    title: "luminaires, instances and bounces, 1 to 1e5 of each",
+    run,
+};
 
 struct Steps {
     numbers: Vec<u32>,
@@ -28,6 +34,9 @@ struct Steps {
     samples: u32,
 }
 
+/// The default, as a method, and what it is held against.
+const BOTH: &str = "both, weighted";
+const DIRECT: &str = "direct light alone";
 /// Timings of each number, in turn with the smallest; their least counts.
 const ROUNDS: usize = 4;
 const SIZE: (u32, u32) = (16, 16);
@@ -193,8 +202,7 @@ fn sweep(bench: &Workbench, steps: &Steps) -> Result<Sweep> {
         let one = |y: f64, n: u32| Point { x: f64::from(n), y, error: None };
         let (mut lights, mut objects, mut bounces) = (lines(backend), lines(backend), lines(backend));
         let series = |name: String| Series { name, points: vec![] };
-        let mut noises =
-            [series(format!("both, weighted ({backend})")), series(format!("direct light alone ({backend})"))];
+        let mut noises = [series(format!("{BOTH} ({backend})")), series(format!("{DIRECT} ({backend})"))];
         let mut errors = series(backend.to_string());
         let smallest = (city(1, LightSampling::Mis), crowd(1), long_paths(1).0);
         let mut least: [Option<f64>; 2] = [None; 2];
@@ -241,19 +249,38 @@ fn sweep(bench: &Workbench, steps: &Steps) -> Result<Sweep> {
         noise.series.extend(noises);
         drift.series.push(errors);
     }
+    let verdicts = verdicts(&noise, &drift);
+    let range = stretch(steps.numbers.iter().map(|n| f64::from(*n)), Worse::Upwards, "things");
+    let summary = up_to(&verdicts, BOTH, |end| {
+        format!("Nothing becomes wrong, and time grows gently; beyond {end} lamps of equal power noise is large.")
+    });
     let findings = findings(steps, [&light_time, &object_time, &bounce_time, &memory, &noise, &drift]);
     let mut charts = vec![light_time, object_time, bounce_time, memory, noise, drift];
     charts.retain(|chart| !chart.series.is_empty());
-    Ok(Sweep { charts, findings })
+    Ok(Sweep { charts, range, verdicts, summary, findings })
+}
+
+/// Both ways to find the light of many lamps, the default first, which has long paths as well.
+fn verdicts(noise: &Chart, drift: &Chart) -> Vec<Verdict> {
+    let squared = |series: &Series| Series {
+        points: series.points.iter().map(|p| Point { y: p.y * p.y, ..*p }).collect(),
+        ..series.clone()
+    };
+    let share = |series: &Series| Series {
+        points: series.points.iter().map(|p| Point { y: 1.0 + p.y, ..*p }).collect(),
+        ..series.clone()
+    };
+    let drift: Vec<Series> = drift.series.iter().map(share).collect();
+    let verdict = |method: &str| {
+        let variances: Vec<_> = noise.series.iter().filter(|s| s.name.starts_with(method)).map(squared).collect();
+        let shares = drift.iter().filter(|_| method == BOTH).collect::<Vec<_>>();
+        light(method, &variances.iter().collect::<Vec<_>>(), &shares, Worse::Upwards)
+    };
+    [BOTH, DIRECT].map(verdict).into()
 }
 
 fn findings(steps: &Steps, [lights, objects, bounces, memory, noise, drift]: [&Chart; 6]) -> Findings {
     let last = |series: &Series| series.points.last().map_or(f64::NAN, |p| p.y);
-    let each = |chart: &Chart, say: &dyn Fn(f64) -> String| {
-        let parts: Vec<_> = chart.series.iter().map(|s| format!("{} {}", s.name, say(last(s)))).collect();
-        parts.join(", ")
-    };
-    let times = |chart: &Chart| each(chart, &|y| format!("{y:.1}"));
     let most = count(f64::from(steps.numbers.last().copied().unwrap_or(0)));
     // Without a GPU there is only the reference.
     let of_last = noise.series.len() - 2;
@@ -261,31 +288,35 @@ fn findings(steps: &Steps, [lights, objects, bounces, memory, noise, drift]: [&C
     // One lamp leaves no choice; the first number that does is what the others are held against.
     let few = steps.numbers.get(1).copied().unwrap_or(1);
     let first = |series: &Series| series.points.get(1).map_or(f64::NAN, |p| p.y);
-    let bytes = match memory.series.is_empty() {
-        true => "no device to ask".into(),
-        false => each(memory, &|y| format!("{:.0} bytes", y / f64::from(*steps.numbers.last().unwrap_or(&1)))),
+    let bytes = |what: &str, backend: &str| {
+        let name = format!("{what} ({backend})");
+        let line = memory.series.iter().find(|series| series.name == name);
+        line.map_or("–".into(), |s| format!("{:.0}", last(s) / f64::from(*steps.numbers.last().unwrap_or(&1))))
     };
+    let row = |index: usize| {
+        let name = &drift.series[index].name;
+        let [lights, objects, bounces] = [lights, objects, bounces].map(|chart| last(&chart.series[index]));
+        let (lamp, instance) = (bytes("lamps", name), bytes("instances", name));
+        let error = share(last(&drift.series[index]));
+        format!("| {name} | {lights:.1} | {objects:.1} | {bounces:.1} | {lamp} | {instance} | {error} |\n")
+    };
+    let table: String = (0..drift.series.len()).map(row).collect();
     Findings {
         starts: format!(
             "Noise: with direct light alone the deviation of a sample grows from {:.2} with {few} lamps to {:.1} with {most}; with both \
-             ways weighted from {:.2} to {:.1}. \
-             Error of the mean at {most} bounces: {}.",
+             ways weighted from {:.2} to {:.1}. A ray takes, against one thing alone, and a thing takes in memory:\n\n\
+             | backend | {most} lamps: times | {most} instances | {most} bounces | bytes a lamp | bytes an instance | error of the mean at \
+             {most} bounces |\n|---|---|---|---|---|---|---|\n{table}\nThe noise of lamps, and the error of long paths:",
             first(direct),
             last(direct),
             first(both),
             last(both),
-            each(drift, &share),
         ),
         how: format!(
             "One lamp is chosen by its power, not by its distance: of {most} lamps a point on the floor is lit by a few, which are \
              hardly ever chosen (so rarely at last that the measured deviation of direct light alone is itself too small). Trees make the time grow with the \
-             logarithm of the number, and then with what no longer fits the caches; a ray takes, against one thing alone: {most} lamps \
-             {}; {most} instances {}; {most} bounces {}. Memory grows in proportion (a thing: {bytes}). Long paths multiply as many \
-             rounded \
-             numbers as they have bounces and add as many to a sum (at most {} off).",
-            times(lights),
-            times(objects),
-            times(bounces),
+             logarithm of the number, and then with what no longer fits the caches. Memory grows in proportion. Long paths multiply as many \
+             rounded numbers as they have bounces and add as many to a sum (at most {} off).",
             share(drift.series.iter().map(largest).fold(0.0, f64::max)),
         ),
         mends: "Choosing among lamps costs the same for any number (alias table). A direction from the surface finds near lamps that \

@@ -11,6 +11,7 @@ mod geometry;
 pub mod glass;
 pub mod glossy;
 pub mod instances;
+mod judge;
 mod many;
 pub mod near_lamps;
 mod page;
@@ -20,54 +21,15 @@ pub mod scale;
 mod series;
 pub mod slivers;
 mod spot;
+mod sweep;
 mod trial;
+pub mod verdict;
 
 pub use page::{Head, Outcome, page};
+pub use sweep::{Definition, Family, Findings, SUMMARY, Sweep};
 
-use super::Workbench;
-use super::chart::{CSV_HEADER, Chart};
-use super::report::choice;
+use crate::report::choice;
 use luminaire::Result;
-
-/// A sweep that was run.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Sweep {
-    /// One or more charts with the same horizontal axis.
-    pub charts: Vec<Chart>,
-    /// What they say.
-    pub findings: Findings,
-}
-
-impl Sweep {
-    /// All points of all charts as CSV: chart, method, x, y, standard error.
-    pub fn csv(&self) -> String {
-        CSV_HEADER.to_owned() + &self.charts.iter().map(Chart::csv).collect::<String>()
-    }
-}
-
-/// The four answers of the map. Numbers in them come from the measured points, not from memory.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Findings {
-    /// Where it starts to fail, method by method.
-    pub starts: String,
-    /// How it fails.
-    pub how: String,
-    /// What luminaire does about it.
-    pub mends: String,
-    /// What the user sees.
-    pub sees: String,
-}
-
-/// A sweep that can be run.
-#[derive(Clone, Copy)]
-pub struct Definition {
-    /// Name on the command line and of its files: lower-case words with hyphens.
-    pub name: &'static str,
-    /// What is swept, from where to where.
-    pub title: &'static str,
-    /// Runs it.
-    pub run: fn(&Workbench) -> Result<Sweep>,
-}
 
 /// Every sweep, in the order of the map.
 pub const SWEEPS: &[Definition] = &[

@@ -1,9 +1,11 @@
 //! A lamp from so near that it fills the sky to so far that it is a point, and one seen from its edge.
 
+use super::judge::{everywhere, light};
 use super::spot::{
     Spot, Tally, chart, irradiance_of_mesh, looking_from, noise_axis, off, percent, series, without_roulette,
 };
-use super::{Definition, Findings, Sweep};
+use super::sweep::{Definition, Family, Findings, Sweep};
+use super::verdict::{Judgement, NOISY_VARIANCE, Verdict, Worse, place, stretch};
 use crate::Workbench;
 use crate::chart::{Axis, Chart, Series};
 use glam::{Affine3A, Vec3};
@@ -16,6 +18,7 @@ use std::f64::consts::PI;
 /// The sweep over the distance.
 pub const DISTANCE: Definition = Definition {
     name: "luminaire",
+    family: Family::Light,
     title: "distance of a square lamp above a floor, 1e-6 to 1e6 of its side",
     run: |bench| sweep(bench, &Steps::new(bench, Case::Distance)),
 };
@@ -23,6 +26,7 @@ pub const DISTANCE: Definition = Definition {
 /// The sweep over the tilt.
 pub const TILT: Definition = Definition {
     name: "edge-on",
+    family: Family::Light,
     title: "sine of the angle between a lamp's plane and the direction to it, 1 to 1e-5",
     run: |bench| sweep(bench, &Steps::new(bench, Case::Tilt)),
 };
@@ -128,9 +132,28 @@ pub fn sweep(bench: &Workbench, steps: &Steps) -> Result<Sweep> {
             series.points.push(measure(*backend, methods[*method].1)?.share(value, truth));
         }
     }
+    let (worse, unit) = match steps.case {
+        Case::Distance => (Worse::Upwards, "sides away"),
+        Case::Tilt => (Worse::Downwards, "(sine)"),
+    };
+    let verdict = |method: usize| {
+        let gpu = gpu.iter().zip(&on_gpu).filter(|(_, (_, of))| *of == method).map(|(series, _)| series);
+        let shares: Vec<_> = std::iter::once(&shares[method]).chain(gpu).collect();
+        light(methods[method].0, &[&noise[method]], &shares, worse)
+    };
+    let verdicts: Vec<Verdict> = [4, 0, 1, 2, 3].map(verdict).into();
+    let range = stretch(steps.values.iter().copied(), worse, unit);
+    let summary = match steps.case {
+        Case::Distance => of_nearest(&verdicts[0]),
+        Case::Tilt => everywhere(
+            &verdicts,
+            methods[4].0,
+            "The defaults find the light of a lamp at every tilt; chance alone soon loses it.",
+        ),
+    };
     let findings = match steps.case {
-        Case::Distance => of_distance(&noise, &fireflies, &shares, &gpu, &tally),
-        Case::Tilt => of_tilt(&noise, &fireflies, &shares, &gpu, &tally),
+        Case::Distance => of_distance(&fireflies, &shares, &gpu, &tally),
+        Case::Tilt => of_tilt(&fireflies, &shares, &gpu, &tally),
     };
     let (x, place) = match steps.case {
         Case::Distance => ("distance / side of the lamp", "of a lamp near and far"),
@@ -144,17 +167,20 @@ pub fn sweep(bench: &Workbench, steps: &Steps) -> Result<Sweep> {
         chart("fireflies", &heading("Largest sample"), x, Axis::log("largest sample / mean"), fireflies),
         chart("energy", &heading("Energy"), x, Axis::linear("share found of the light"), shares),
     ];
-    Ok(Sweep { charts, findings })
+    Ok(Sweep { charts, range, verdicts, summary, findings })
 }
 
-/// Where the noise of a method is above a limit, in words.
-fn noisy(series: &Series, limit: f64) -> String {
-    let bad: Vec<f64> = series.points.iter().filter(|p| p.y.is_nan() || p.y > limit).map(|p| p.x).collect();
-    match bad[..] {
-        [] => "nowhere".into(),
-        [only] => format!("at {only:.0e}"),
-        [first, .., last] => format!("between {first:.0e} and {last:.0e}"),
-    }
+/// How near a lamp may be by the defaults.
+fn of_nearest(default: &Verdict) -> String {
+    let nearest = default.ranges.iter().filter(|range| range.judgement == Judgement::Safe).map(|range| range.from);
+    nearest.reduce(f64::min).map_or("Nothing of this range is safe.".into(), |nearest| {
+        format!("Hang no lamp nearer to a surface than {} of its side.", place(nearest))
+    })
+}
+
+/// What the table of the verdicts goes by.
+fn starts() -> String {
+    format!("A sample varies by more than ten times its mean (variance above {NOISY_VARIANCE}):")
 }
 
 fn highest(series: &Series) -> f64 {
@@ -166,19 +192,11 @@ fn farthest<'a>(series: impl IntoIterator<Item = &'a Series>, range: std::ops::R
     series.into_iter().map(|s| off(s, range.clone())).fold(0.0, f64::max)
 }
 
-fn of_distance(noise: &[Series], fireflies: &[Series], shares: &[Series], gpu: &[Series], tally: &Tally) -> Findings {
+fn of_distance(fireflies: &[Series], shares: &[Series], gpu: &[Series], tally: &Tally) -> Findings {
     let default = gpu.iter().skip(1).step_by(2);
     let lost = default.flat_map(|s| &s.points).filter(|p| p.y < 0.95).map(|p| p.x).reduce(f64::max);
     Findings {
-        starts: format!(
-            "A sample varies by more than ten times its mean (variance above 100): chance alone {}, by area {}, by solid angle {}, by \
-             area with MIS {}, by solid angle with MIS (the default) {}.",
-            noisy(&noise[0], 100.0),
-            noisy(&noise[1], 100.0),
-            noisy(&noise[2], 100.0),
-            noisy(&noise[3], 100.0),
-            noisy(&noise[4], 100.0),
-        ),
+        starts: starts(),
         how: format!(
             "Sampled by area alone, a lamp at a small distance is all in the few points straight above, whose inverse square is not bounded: a \
              sample of up to {:.0e} times the mean where they are met, and darkness where not. Chance finds near lamps at once and far \
@@ -202,16 +220,9 @@ fn of_distance(noise: &[Series], fireflies: &[Series], shares: &[Series], gpu: &
     }
 }
 
-fn of_tilt(noise: &[Series], fireflies: &[Series], shares: &[Series], gpu: &[Series], tally: &Tally) -> Findings {
+fn of_tilt(fireflies: &[Series], shares: &[Series], gpu: &[Series], tally: &Tally) -> Findings {
     Findings {
-        starts: format!(
-            "A sample varies by more than ten times its mean (variance above 100): chance alone {}, by area {}, by solid angle {}, by \
-             solid angle with MIS (the default) {}.",
-            noisy(&noise[0], 100.0),
-            noisy(&noise[1], 100.0),
-            noisy(&noise[2], 100.0),
-            noisy(&noise[4], 100.0),
-        ),
+        starts: starts(),
         how: "A lamp seen from its edge takes up less of the sky, in proportion to the sine: chance meets it as much more rarely. \
               Sampling its area is not disturbed, because the same cosine makes every sample as much fainter."
             .into(),

@@ -1,6 +1,8 @@
 //! The stability map as a page of Markdown.
 
-use super::{Definition, Sweep};
+use super::geometry::{COMPUTE_BVH, RAY_QUERY, REFERENCE};
+use super::sweep::{Definition, Family, Sweep};
+use super::verdict::{Judgement, NOISY_VARIANCE, SURE, Verdict, WRONG_RAYS, WRONG_SHARE};
 use crate::report::markdown::image;
 use crate::report::table::Table;
 use crate::report::words::{capital, one_line};
@@ -22,24 +24,36 @@ pub struct Head {
 /// A sweep with what became of it.
 pub type Outcome = (Definition, Result<Sweep>);
 
-/// The page: a table of all sweeps, then each with its charts and its four answers. A sweep that failed says why.
+/// The page: a table for each family of sweeps with a line for each sweep, then each sweep with its verdicts, charts and four answers. A sweep that
+/// failed says why.
 pub fn page(head: &Head, outcomes: &[Outcome]) -> String {
+    let [safe, noisy, wrong] = [Judgement::Safe, Judgement::Noisy, Judgement::Wrong].map(Judgement::symbol);
     let mut text = format!(
         "# Where methods fail\n\n\
-         Every method over the range in which it can fail, side by side on every backend; sentences and charts are of one run.\n\n\
-         - Command: `{}`\n- Device: {}\n- Ran on: {}\n\n\
-         Bars are two standard errors each way. Ratios of times are of things that ran side by side.\n\n",
-        head.command, head.device, head.backends
+         Every method is driven over the range in which it can fail, on every backend. This page says from where on it fails, and what to do about it.\n\n\
+         | | geometry: rays aimed at the hardest places | light |\n|---|---|---|\n\
+         | {safe} safe | none goes wrong | right, and even |\n\
+         | {noisy} noisy | some go wrong: single pixels, dotted edges | right in the mean, but bright dots: 5 % of noise take more than 40 000 samples a pixel |\n\
+         | {wrong} wrong | more than {:.0} % go wrong, or hits are more than {:.1} % of the size off | more than {:.1} % of the light is missing or too much, however many samples |\n\n\
+         `{safe} to 1e5, {noisy} beyond`: safe at every place that was tried up to 1e5, noisy at the next one. A – was not tried, or is what the others are held against.\n\n",
+        100.0 * WRONG_RAYS / 1e6,
+        100.0 * WRONG_SHARE,
+        100.0 * WRONG_SHARE,
     );
-    let row = |(sweep, outcome): &Outcome| {
-        let (starts, mends) = match outcome {
-            Ok(sweep) => (one_line(&sweep.findings.starts), one_line(&sweep.findings.mends)),
-            Err(error) => (format!("the sweep failed: {}", one_line(&error.to_string())), String::new()),
-        };
-        vec![format!("[{name}](#{name})", name = sweep.name), starts, mends]
-    };
-    let columns = ["sweep", "who fails, from where", "what luminaire does"];
-    text += &Table::new(columns).with_rows(outcomes.iter().map(row)).markdown();
+    for family in [Family::Geometry, Family::Light] {
+        text += &summary(family, outcomes);
+    }
+    text += &format!(
+        "## How it was measured\n\n\
+         - Command: `{}`\n- Device: {}\n- Ran on: {}\n- All sentences, tables and charts are of this one run. Bars are two standard errors each way. Ratios of times are of things that ran side by side.\n\
+         - Light is called noisy where the variance of a sample is more than {NOISY_VARIANCE} times the squared mean, or less than half of the light was found; and wrong where its mean is off by more than \
+         {:.1} % beyond {SURE} standard errors.\n\
+         - The rays of the geometric sweeps are aimed at edges, corners and rims, which next to no ray of a picture meets. What failed once counts as failing further on.\n",
+        head.command,
+        head.device,
+        head.backends,
+        100.0 * WRONG_SHARE
+    );
     for (sweep, outcome) in outcomes {
         text += &format!("\n## <a id=\"{}\"></a>{}\n\n", sweep.name, capital(sweep.title));
         match outcome {
@@ -50,19 +64,69 @@ pub fn page(head: &Head, outcomes: &[Outcome]) -> String {
     text
 }
 
+/// The table of a family, without one if none of its sweeps is there.
+fn summary(family: Family, outcomes: &[Outcome]) -> String {
+    let (title, methods): (_, &[&str]) = match family {
+        Family::Geometry => ("Geometry, by backend", &["cpu", "compute BVH", "ray query"]),
+        Family::Light => ("Light, by estimator", &["default", "others"]),
+    };
+    let columns = [&["sweep", "range"], methods, &["in one sentence"]].concat();
+    let row = |(definition, outcome): &Outcome| -> Vec<String> {
+        let name = format!("[{name}](#{name})", name = definition.name);
+        let rest = match outcome {
+            Ok(sweep) => {
+                let verdicts = cells(family, &sweep.verdicts);
+                [sweep.range.clone()].into_iter().chain(verdicts).chain([sweep.summary.clone()]).collect()
+            }
+            Err(error) => {
+                let empty = std::iter::repeat_n(String::new(), columns.len() - 2);
+                empty.chain([format!("the sweep failed: {}", one_line(&error.to_string()))]).collect::<Vec<_>>()
+            }
+        };
+        [name].into_iter().chain(rest).collect()
+    };
+    let rows: Vec<_> = outcomes.iter().filter(|(definition, _)| definition.family == family).map(row).collect();
+    if rows.is_empty() {
+        return String::new();
+    }
+    format!("## {title}\n\n{}\n\n", Table::new(columns.iter().copied()).with_rows(rows).markdown())
+}
+
+/// What the table of a family says of the methods of a sweep that a user can choose.
+fn cells(family: Family, verdicts: &[Verdict]) -> Vec<String> {
+    match family {
+        Family::Geometry => {
+            let of = |method: &str| verdicts.iter().find(|verdict| verdict.method == method);
+            [REFERENCE, COMPUTE_BVH, RAY_QUERY].map(|method| of(method).map_or("–".into(), Verdict::in_words)).into()
+        }
+        Family::Light => {
+            let (default, others) = verdicts.split_at(verdicts.len().min(1));
+            let named = |verdict: &Verdict| format!("{}: {}", verdict.method, verdict.in_words());
+            let others: Vec<_> = others.iter().map(named).collect();
+            let default = default.first().map_or("–".into(), Verdict::in_words);
+            vec![default, if others.is_empty() { "–".into() } else { others.join("; ") }]
+        }
+    }
+}
+
 fn body(head: &Head, name: &str, sweep: &Sweep) -> String {
-    let mut text = String::new();
+    let findings = &sweep.findings;
+    let mut text =
+        format!("**{}**\n\n**Where it starts to fail.** {}\n\n", sweep.summary, capital(findings.starts.trim()));
+    text = text.replace(".** \n", ".**\n");
+    if !sweep.verdicts.is_empty() {
+        let row = |verdict: &Verdict| vec![verdict.method.clone(), verdict.in_words(), one_line(&verdict.evidence)];
+        let table = Table::new(["method", "verdict", "the numbers"]).with_rows(sweep.verdicts.iter().map(row));
+        text += &table.markdown();
+        text += "\n";
+    }
+    for (question, answer) in
+        [("How it fails.", &findings.how), ("What luminaire does.", &findings.mends), ("What you see.", &findings.sees)]
+    {
+        text += &format!("**{question}** {}\n\n", capital(answer.trim()));
+    }
     for chart in &sweep.charts {
         text += &image(&chart.title, &head.folder, &format!("{name}-{}.svg", chart.name));
-    }
-    let findings = &sweep.findings;
-    for (question, answer) in [
-        ("Where it starts to fail.", &findings.starts),
-        ("How it fails.", &findings.how),
-        ("What luminaire does.", &findings.mends),
-        ("What you see.", &findings.sees),
-    ] {
-        text += &format!("**{question}** {}\n\n", capital(answer.trim()));
     }
     text + &format!("The numbers: [{name}.csv](<{}/{name}.csv>)\n", head.folder)
 }

@@ -1,7 +1,9 @@
 //! Adding up very many samples: what the sum's precision does to the mean.
 
+use super::judge::everywhere;
 use super::series::{above_from, largest};
-use super::{Definition, Findings, Sweep};
+use super::sweep::{Definition, Family, Findings, Sweep};
+use super::verdict::{Judgement, Verdict, Worse, stretch};
 use crate::Workbench;
 use crate::chart::{Axis, Chart, Point, Series};
 use crate::report::words::{count, share};
@@ -17,8 +19,10 @@ use std::sync::atomic::AtomicBool;
 
 /// The sweep over the number of samples.
 pub const DEFINITION: Definition =
-    Definition { name: "samples", title: "the number of samples of a pixel, 1 to 1e6", run };
+    Definition { name: "samples", family: Family::Light, title: "the number of samples of a pixel, 1 to 1e6", run };
 
+/// How luminaire adds, as a method.
+const OURS: &str = "luminaire (f32 to 4, then f64)";
 /// What is added up in the first chart and rendered in the third.
 const CONSTANT: f32 = 0.1;
 /// A mean that is further off is no longer what a double-precision sum would show in 16 bits.
@@ -49,21 +53,14 @@ fn sweep(bench: &Workbench, numbers: &[u32], most_rendered: u32) -> Result<Sweep
     let random = sums("random", "The mean of n radiances spread evenly over nine powers of ten", &radiance)?;
     let rendered = rendered(bench, numbers.iter().copied().filter(|n| *n <= most_rendered))?;
 
+    let verdicts = verdicts(&constant, &random, &rendered);
+    let range = stretch(numbers.iter().map(|n| f64::from(*n)), Worse::Upwards, "samples a pixel");
+    let summary =
+        everywhere(&verdicts, OURS, "Take as many samples as you like: they are added up in double precision.");
     let [plain, compensated, ours] = &constant.series[..] else { unreachable!("three ways to add") };
-    let from = |series: &Series| match above_from(series, VISIBLE) {
-        Some(x) => format!("from {} samples on, {} at the end", count(x), share(last(series))),
-        None => format!("never (at most {})", share(largest(series))),
-    };
     let worst_render = rendered.series.iter().map(largest).fold(0.0, f64::max);
     let findings = Findings {
-        starts: format!(
-            "More than {} off: a plain f32 sum {} for a constant, {} for random radiances; a compensated f32 sum {}; luminaire {}.",
-            share(VISIBLE),
-            from(plain),
-            from(&random.series[0]),
-            from(compensated),
-            from(ours),
-        ),
+        starts: format!("The mean is more than {} off:", share(VISIBLE)),
         how: format!(
             "Each addition is rounded to the 24 bits of the sum so far. Equal summands are rounded the same way again and again, so the \
              error \
@@ -87,7 +84,24 @@ fn sweep(bench: &Workbench, numbers: &[u32], most_rendered: u32) -> Result<Sweep
         sees: "Nothing. With a plain f32 sum long renders would grow darker or brighter by percents, evenly and without noise, so that \
         nobody notices.".into(),
     };
-    Ok(Sweep { charts: vec![constant, random, rendered], findings })
+    Ok(Sweep { charts: vec![constant, random, rendered], range, verdicts, summary, findings })
+}
+
+/// luminaire's way first, also in the rendered pictures; then the others.
+fn verdicts(constant: &Chart, random: &Chart, rendered: &Chart) -> Vec<Verdict> {
+    let from = |series: &Series| match above_from(series, VISIBLE) {
+        Some(x) => format!("from {} samples on, {} at the end", count(x), share(last(series))),
+        None => format!("never (at most {})", share(largest(series))),
+    };
+    let verdict = |index: usize| {
+        let [constant, random] = [constant, random].map(|chart| &chart.series[index]);
+        let pictures = rendered.series.iter().filter(|_| index == 2);
+        let points = [constant, random].into_iter().chain(pictures).flat_map(|series| &series.points);
+        let judged = points.map(|point| (point.x, Judgement::of_share(point.y)));
+        let evidence = format!("a constant {}; random radiances {}", from(constant), from(random));
+        Verdict::new(constant.name.clone(), judged, Worse::Upwards, evidence)
+    };
+    [2, 0, 1].map(verdict).into()
 }
 
 fn last(series: &Series) -> f64 {
@@ -101,8 +115,7 @@ fn radiance(sample: u32) -> f32 {
 
 /// The error of three ways to add `values`.
 fn drifts(values: &dyn Fn(u32) -> f32, numbers: &[u32]) -> Result<Vec<Series>> {
-    let mut series = ["f32 sum", "compensated f32 sum", "luminaire (f32 to 4, then f64)"]
-        .map(|name| Series { name: name.into(), points: vec![] });
+    let mut series = ["f32 sum", "compensated f32 sum", OURS].map(|name| Series { name: name.into(), points: vec![] });
     let (mut plain, mut sum, mut lost) = (0f32, 0f32, 0f32);
     let mut exact = Exact::default();
     let mut next = 0;

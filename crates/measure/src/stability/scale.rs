@@ -1,10 +1,12 @@
 //! How large or small a scene may be.
 
 use super::geometry::{
-    COMPUTE_BVH, Stand, T_MIN, Worse, add, baked, chart, decades, describe, lost, name_of, named, per_million,
-    rays_to_faces, rays_to_features, value,
+    COMPUTE_BVH, Stand, T_MIN, add, baked, chart, decades, lost, name_of, named, per_million, rays_to_faces,
+    rays_to_features, value,
 };
-use super::{Definition, Findings, Sweep};
+use super::judge::{everywhere, geometric};
+use super::sweep::{Definition, Family, Findings, Sweep};
+use super::verdict::{Worse, stretch};
 use crate::Workbench;
 use crate::chart::{Axis, Chart, Point};
 use crate::intersect_f32::{Test, Triangles};
@@ -17,7 +19,8 @@ use luminaire::scene::build::{add as add_mesh, cube, empty, icosphere, lamp, mat
 use luminaire::scene::{Luminaire, Scene};
 
 /// The sweep.
-pub const DEFINITION: Definition = Definition { name: "scale", title: "Size of the scene, 1e-8 to 1e8 units", run };
+pub const DEFINITION: Definition =
+    Definition { name: "scale", family: Family::Geometry, title: "Size of the scene, 1e-8 to 1e8 units", run };
 
 /// The program that comes with the paper of Möller and Trumbore takes determinants up to 1e-6 for zero.
 const AS_PUBLISHED: &str = "f32 Möller-Trumbore, as published";
@@ -80,8 +83,13 @@ pub fn sweep(bench: &Workbench, sizes: &[f64], rays: usize) -> Result<Sweep> {
         }
     }
     let charts = vec![lost_chart, self_hits, escapes, picture];
+    let (pictures, counts): (Vec<&Chart>, Vec<_>) = charts.iter().partition(|chart| chart.name == "picture");
+    let verdicts = geometric(&counts, &pictures, Worse::Upwards);
+    let range = stretch(sizes.iter().copied(), Worse::Upwards, "units");
+    let summary =
+        everywhere(&verdicts, COMPUTE_BVH, "Any unit will do: a model may be in millimetres or in kilometres.");
     let findings = findings(&charts);
-    Ok(Sweep { charts, findings })
+    Ok(Sweep { charts, range, verdicts, summary, findings })
 }
 
 /// A closed room with a lamp, a point luminaire and a ball.
@@ -111,7 +119,7 @@ fn findings(charts: &[Chart]) -> Findings {
     let picture = named(charts, "picture");
     let (smallest, largest) = (value(picture, COMPUTE_BVH, 1e-8), value(picture, COMPUTE_BVH, 1e8));
     Findings {
-        starts: describe(charts, 1e-4, Worse::Upwards),
+        starts: String::new(),
         how: format!(
             "A fixed smallest distance of 1e-4 units is smaller than the rounding of a scene of 1e3 units, and larger than the gaps of a scene of 0.01 units. In \
              proportion to the size it is the same for every size, and still larger than the thin parts. The determinant of Möller and \

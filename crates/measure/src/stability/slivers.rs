@@ -1,10 +1,12 @@
 //! Triangles that are long and narrow, that have no area, or that lie on each other.
 
 use super::geometry::{
-    BARE_BOXES, COMPUTE_BVH, Departures, RAY_QUERY, Stand, T_MIN, Worse, add, baked, chart, decades, describe, lost,
-    named, per_million, percentile_999, rays_to_faces, rays_to_features, value,
+    BARE_BOXES, COMPUTE_BVH, Departures, RAY_QUERY, Stand, T_MIN, add, baked, chart, decades, lost, named, per_million,
+    percentile_999, rays_to_faces, rays_to_features, value,
 };
-use super::{Definition, Findings, Sweep};
+use super::judge::{geometric, off_from, up_to};
+use super::sweep::{Definition, Family, Findings, Sweep};
+use super::verdict::{Verdict, Worse, place, stretch};
 use crate::Workbench;
 use crate::chart::{Axis, Chart, Point};
 use crate::rays::{Random, Ray};
@@ -15,8 +17,12 @@ use luminaire::scene::build::{icosphere, mesh};
 use luminaire::scene::{Mesh, Scene, Triangle};
 
 /// The sweep.
-pub const DEFINITION: Definition =
-    Definition { name: "slivers", title: "Triangles 1 to 1e8 times as long as they are wide", run };
+pub const DEFINITION: Definition = Definition {
+    name: "slivers",
+    family: Family::Geometry,
+    title: "Triangles 1 to 1e8 times as long as they are wide",
+    run,
+};
 
 fn run(bench: &Workbench) -> Result<Sweep> {
     sweep(bench, &decades(0, 8, bench), 40_000)
@@ -81,8 +87,21 @@ pub fn sweep(bench: &Workbench, aspects: &[f64], rays: usize) -> Result<Sweep> {
         }
         charts.extend([lost_chart, wrong, slide, self_hits]);
     }
+    // How far hits slide is left out: it is seen in textures alone.
+    let counts: Vec<_> = charts.iter().filter(|chart| !chart.name.starts_with("slide")).collect();
+    let verdicts = geometric(&counts, &[], Worse::Upwards);
+    let range = stretch(aspects.iter().copied(), Worse::Upwards, "times as long as wide");
+    let summary = summary(&charts, &verdicts);
     let findings = findings(bench, &charts)?;
-    Ok(Sweep { charts, findings })
+    Ok(Sweep { charts, range, verdicts, summary, findings })
+}
+
+/// What to do about slivers.
+fn summary(charts: &[Chart], verdicts: &[Verdict]) -> String {
+    let slides = named(charts, "slide-turned").series.iter().find(|series| series.name == COMPUTE_BVH);
+    let textures =
+        slides.and_then(off_from).map_or(String::new(), |x| format!("; textures on them slide from {} on", place(x)));
+    up_to(verdicts, COMPUTE_BVH, |end| format!("Triangles may be {end} times as long as wide{textures}."))
 }
 
 /// Rays from above to points of the strip: in its triangles, on their edges and on their corners.
@@ -129,7 +148,7 @@ fn doubled_ball() -> Mesh {
     ball
 }
 
-/// What the methods make of that ball: rays lost, hits off by more than 1e-3, and rays that meet the place which they leave, in words.
+/// What the methods make of that ball: rays lost, hits off by more than 1e-3, and rays that meet the place which they leave, as a table.
 fn doubled(bench: &Workbench) -> Result<String> {
     let map = Affine3A::from_translation(Vec3::new(0.8, -0.5, 0.3)) * Affine3A::from_rotation_x(0.3);
     let scene = baked(doubled_ball(), map);
@@ -140,21 +159,23 @@ fn doubled(bench: &Workbench) -> Result<String> {
     let hits = stand.hits(&rays, true)?;
     let inwards = rays_to_faces(&scene, inner, 30_000, &mut random);
     let leaves = stand.leaves(&inwards, &[])?;
-    let in_words = hits.iter().map(|(name, found)| {
-        let off = found.iter().zip(&hits[0].1).filter_map(|(f, e)| Some((f.as_ref()?.t - e.as_ref()?.t).abs()));
-        let off = off.filter(|off| *off > 1e-3).count();
-        format!("{name} {} lost, {off} wrong", lost(found))
-    });
-    let again = leaves.iter().map(|Departures { name, first, second }| {
+    let again = |method: &str| {
+        let Departures { first, second, .. } = leaves.iter().find(|departures| departures.name == method)?;
         let pairs = first.iter().zip(second).filter_map(|(f, s)| Some((f.as_ref()?, s.as_ref()?)));
         let corners = |hit: &Hit| scene.meshes[0].triangles[hit.triangle as usize].vertices;
-        format!("{name} {}", pairs.filter(|(f, s)| corners(f) == corners(s)).count())
+        Some(pairs.filter(|(f, s)| corners(f) == corners(s)).count())
+    };
+    let rows = hits.iter().map(|(name, found)| {
+        let off = found.iter().zip(&hits[0].1).filter_map(|(f, e)| Some((f.as_ref()?.t - e.as_ref()?.t).abs()));
+        let off = off.filter(|off| *off > 1e-3).count();
+        let again = again(name).map_or("–".into(), |count| count.to_string());
+        format!("| {name} | {} | {off} | {again} |\n", lost(found))
     });
     Ok(format!(
-        "Of {} rays in a ball whose triangles are all there twice, with triangles of no height on its edges: {}. As many that leave it meet the place that they left: {}.",
+        "In a ball whose triangles are all there twice, with triangles of no height on its edges, of {} rays:\n\n\
+         | method | lost | wrong | meet the place that they left |\n|---|---|---|---|\n{}\nOn a floor of slivers:",
         rays.len(),
-        in_words.collect::<Vec<_>>().join("; "),
-        again.collect::<Vec<_>>().join("; ")
+        rows.collect::<String>()
     ))
 }
 
@@ -162,14 +183,13 @@ fn findings(bench: &Workbench, charts: &[Chart]) -> Result<Findings> {
     let wrong = |method: &str, aspect: f64| value(named(charts, "wrong-turned"), method, aspect);
     let slide = |method: &str, aspect: f64| value(named(charts, "slide-turned"), method, aspect);
     Ok(Findings {
-        starts: describe(charts.iter().filter(|chart| !chart.name.starts_with("slide")), 0.0, Worse::Upwards),
+        starts: doubled(bench)?,
         how: format!(
             "The areas from which the place in a triangle is computed are differences of products that are as large as its length squared: where it is \
              narrower than that difference is certain (1 : 1e5), the distance, taken from the areas as the watertight test's authors have it, is any \
              between those of the corners. Hits are then wrong ({} a million at 1 : 1e6), and a ray that leaves meets the triangle again. What \
-             is lost is lost at the edges, of which slivers have more than other triangles. {}",
-            wrong(BARE_BOXES, 1e6),
-            doubled(bench)?
+             is lost is lost at the edges, of which slivers have more than other triangles.",
+            wrong(BARE_BOXES, 1e6)
         ),
         mends: format!(
             "The compute BVH decides by the watertight test and takes the distance from the triangle's plane, whose normal is the product of its two shorter \
