@@ -86,7 +86,7 @@ bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uve
     if (last && LIGHT_SAMPLING == LIGHT_DIRECT && next.pdf != IMPULSE) return false;
     path.throughput *= next.weight / next.eta2;
     if (path.throughput == vec3(0.0)) return false;
-    // Such a path has not found nothing: it is lost, and has to be counted.
+    // A path that overflowed: not black but lost, and it has to be counted.
     if (!is_finite(path.throughput) || !is_finite(next.wi)) {
         path.radiance = vec3(uintBitsToFloat(0x7fc00000u));
         return false;

@@ -52,7 +52,7 @@ uvec4 numbers(uint pixel, uint sample_index, uint block, uint seed) {
                  : random4(pixel, sample_index, block, seed);
 }
 
-// What tells a ray's decisions about transparent surfaces apart from other rays'. `ray` is 2 b for the ray to bounce b,
+// What makes a ray's decisions about transparent surfaces independent of other rays'. `ray` is 2 b for the ray to bounce b,
 // 2 b + 1 for the shadow ray from there.
 uint ray_salt(uint pixel, uint sample_index, uint ray, uint seed) {
     return random4(pixel, sample_index, 0x80000000u | ray, seed).x;

@@ -1,7 +1,6 @@
 //! Materials from an MTL file.
 //!
-//! Read here and not by `tobj`, which gives up a whole file at the first bad number: the geometry is worth more than that, so
-//! whatever is wrong in an MTL file is a warning with its line.
+//! The geometry is worth more than a bad number in its materials, so whatever is wrong in an MTL file is a warning with its line.
 
 mod map_options;
 
