@@ -33,7 +33,7 @@ struct Impulses {
     float probability;    // with which a path takes an impulse
 };
 
-float average(vec3 v) { return (v.x + v.y + v.z) * (1.0 / 3.0); }
+float mean(vec3 v) { return (v.x + v.y + v.z) * (1.0 / 3.0); }
 
 Impulses impulses(Surfel s, Material material, vec3 wo) {
     Impulses i = Impulses(vec3(0.0), vec3(0.0), s.shading_normal, 0.0, 0.0);
@@ -53,8 +53,8 @@ Impulses impulses(Surfel s, Material material, vec3 wo) {
         i.reflected *= f;
         i.transmitted = material.transmission * (1.0 - f);
     }
-    float impulse = average(i.reflected + i.transmitted);
-    float other = average(rest);
+    float impulse = mean(i.reflected + i.transmitted);
+    float other = mean(rest);
     if (impulse > 0.0) {
         if (other == 0.0) i.probability = 1.0;
         else i.probability = material.impulse_probability != BY_ALBEDOS ? material.impulse_probability : impulse / (impulse + other);

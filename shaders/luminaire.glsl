@@ -126,7 +126,7 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, vec3 throughput, uvec4 r
     vec3 radiance = scattered * incident;
     if (radiance == vec3(0.0)) return vec3(0.0);
     if (LIGHT_SAMPLING == LIGHT_MIS && (area || surroundings)) {
-        radiance *= power_heuristic(density, surviving(f.w * rest, throughput * scattered, material));
+        radiance *= power_heuristic(density, path_pdf(f.w * rest, throughput * scattered, material));
     }
 
     if (area && (TEXTURES || HOLES)) {
@@ -141,7 +141,7 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, vec3 throughput, uvec4 r
             vec3 n = cross(ab, ac);
             vec3 unit = normalize(n / largest(abs(n)));
             vec2 barycentric = vec2(dot(cross(ap, ac), unit), dot(cross(ab, ap), unit)) / dot(n, unit);
-            if (TEXTURES && emission_map != NONE) radiance *= texture_at(emission_map, uv_at(light.triangle, barycentric)).rgb;
+            if (TEXTURES && emission_map != NONE) radiance *= texture_at(emission_map, texture_coordinates(light.triangle, barycentric)).rgb;
             if (partly) radiance *= opacity_at(light.material, light.triangle, barycentric);
             if (radiance == vec3(0.0)) return vec3(0.0);
         }

@@ -14,6 +14,7 @@ layout(local_size_x = 64) in;
 #include "intersect.glsl"
 #include "surfel.glsl"
 #include "impulse.glsl"
+#include "bsdf.glsl"
 #include "scatter.glsl"
 #include "environment.glsl"
 #include "luminaire.glsl"

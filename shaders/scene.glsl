@@ -1,6 +1,6 @@
 // What the host binds. The structs' twins are in src/gpu/layout.rs; a test compares every member's offset.
 
-// What the scene uses: computed by src/gpu/model.rs. A `false` removes the code.
+// What the scene uses: computed by src/gpu/specialization.rs. A `false` removes the code.
 layout(constant_id = 0) const bool GLOSSY = true;              // some material has a glossy lobe
 layout(constant_id = 1) const bool VERTEX_NORMALS = true;      // some mesh has vertex normals
 layout(constant_id = 2) const bool INSTANCES = true;           // more than one object, or a transform

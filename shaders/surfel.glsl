@@ -53,7 +53,7 @@ Surfel surfel(Hit hit, vec3 wo) {
     float narrow = min(edges / largest(abs(s.geometric_normal)), MOST_NARROW);
     s.position_error = gamma(POINT_ROUNDINGS) * (abs(pa) + abs(pb) + abs(pc)) + gamma(PLANE_ROUNDINGS) * size * narrow;
     s.material = triangle.material;
-    if (TEXTURES) s.uv = uv_at(hit.triangle, w);
+    if (TEXTURES) s.uv = texture_coordinates(hit.triangle, w);
 
     vec3 n = vec3(0.0);
     if (VERTEX_NORMALS) {

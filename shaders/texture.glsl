@@ -1,6 +1,6 @@
 // Images on surfaces; twins in src/reference/texture.rs.
 
-vec2 uv_at(uint triangle, vec2 barycentric) {
+vec2 texture_coordinates(uint triangle, vec2 barycentric) {
     vec4 ab = uintBitsToFloat(texelFetch(uvs, int(2u * triangle)));
     vec2 c = uintBitsToFloat(texelFetch(uvs, int(2u * triangle + 1u)).xy);
     return (1.0 - barycentric.x - barycentric.y) * ab.xy + barycentric.x * ab.zw + barycentric.y * c;
@@ -56,7 +56,7 @@ float opacity_at(uint material, uint triangle, vec2 barycentric) {
     Material m = load_material(material);
     float opacity = m.opacity;
     uint map = m.opacity_map;
-    if (map != NONE) opacity *= texture_at(map, uv_at(triangle, barycentric)).a;
+    if (map != NONE) opacity *= texture_at(map, texture_coordinates(triangle, barycentric)).a;
     return opacity;
 }
 

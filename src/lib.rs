@@ -29,7 +29,7 @@
 //! let request = Request { backend: Some(Backend::Cpu), device: None };
 //! let mut renderer = backend::open(&scene, &request)?;
 //! let film = renderer.render(Limits { spp: Some(4), ..Limits::default() })?;
-//! image::save(&folder.join("cornell.png"), &film, scene.settings.exposure)?;
+//! film.save(&folder.join("cornell.png"), scene.settings.exposure)?;
 //! # assert_eq!((film.width, film.least_samples()), (32, 4));
 //! # assert!(folder.join("cornell.png").is_file());
 //! # Ok(())
@@ -51,14 +51,14 @@
 //!
 //! | | slide | file: function | tests | scene |
 //! |---|---|---|---|---|
-//! | 1 | Surface Element Class: `Surfel`, Blinn-Phong (normalised) | `surfel.glsl`: `surfel`; `scatter.glsl`: `bsdf_and_pdf`; [`reference::surfel`] | `gpu::functions::bsdf_matches`, `reference::scattering` | `plates` |
+//! | 1 | Surface Element Class: `Surfel`, Blinn-Phong (normalised) | `surfel.glsl`: `surfel`; `bsdf.glsl`: `bsdf_and_pdf`; [`reference::surfel`], [`reference::bsdf`] | `gpu::functions::bsdf_matches`, `reference::scattering` | `plates` |
 //! | 2 | A Simple Raytracer: direct light and the ambient term | `path.glsl`: `SIMPLE`; [`scene::Integrator::Simple`] | `gpu::pictures` ("simple"), `gpu::features` ("parallel") | `simple` |
 //! | 3 | Path Trace Function: emission, direct, indirect light | `path.glsl`: `extend_path`; [`reference::path`] | `gpu::pictures`, `reference::transport` | `cornell` |
 //! | 4 | Lighting Functions: direct light of a point, ambient | `luminaire.glsl`: `direct_light`; [`reference::luminaire`] | `gpu::pictures::inverse_square_and_none_at_infinity` | `simple`, `shadows` |
 //! | 5 | Intersection Problems: displacing the intersection | `surfel.glsl`: `offset_ray_origin` | `gpu::intersection::surfaces_do_not_hit_themselves` | all |
 //! | 6 | Shadows & Attenuation: shadow rays, inverse square, infinity | `luminaire.glsl`: `direct_light`; `intersect*.glsl`: `occluded` | `reference::light`, `gpu::intersection` | `shadows` |
 //! | 7 | Inefficient Integration: evenly distributed directions | `warp.glsl`: `uniform_hemisphere`; [`scene::Directions::Uniform`] | `reference::scattering`, `gpu::features::every_choice_of_the_estimator_equals_the_reference` | `directions` |
-//! | 8 | More Efficient Integration: cosine, BSDF | `warp.glsl`: `cosine_hemisphere`, `glossy_half_vector`; `scatter.glsl` | `gpu::functions::directions_are_cosine_distributed`, `reference::scattering` | `directions` |
+//! | 8 | More Efficient Integration: cosine, BSDF | `warp.glsl`: `cosine_hemisphere`, `glossy_half_vector`; `bsdf.glsl`: `bsdf_direction` | `gpu::densities::everything_is_drawn_by_its_density`, `reference::scattering` | `directions` |
 //! | 9 | Image Loop: samples added up at the image; samples or time end it | `path_trace.comp`; [`render`]; [`sampling`] | `render::tests`, `sampling` | all |
 //! | 10 | Extinction: re-weighted, or literally | `path.glsl`: `EXTINCTION`; `scatter.glsl`: `survival` | `reference::estimators` (furnaces) | `extinction`, `furnace` |
 //! | 11 | Albedo Termination: a threshold | `path.glsl`: `THRESHOLD` | `reference::estimators` (furnaces) | `extinction` |

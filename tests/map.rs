@@ -62,14 +62,14 @@ impl Paths<'_> {
 
     fn import(&mut self, segments: &[String]) {
         if segments.len() > 1 {
-            self.imports.insert(self.full(segments).unwrap_or_else(|| self.from_here(segments)));
+            self.imports.insert(self.full(segments).unwrap_or_else(|| self.own(segments)));
         }
     }
 
     fn use_tree(&mut self, before: &[String], tree: &syn::UseTree, handed_on: bool) {
         let with = |name: &syn::Ident| before.iter().cloned().chain([name.to_string()]).collect::<Vec<_>>();
         let mut leaf = |path: &[String], name: String| {
-            let path = self.full(path).unwrap_or_else(|| self.from_here(path));
+            let path = self.full(path).unwrap_or_else(|| self.own(path));
             if handed_on {
                 self.hands_on.push((name, path));
             } else {
@@ -89,7 +89,7 @@ impl Paths<'_> {
     }
 
     /// `child::Name`, as the file of a folder says it. What is of another crate then seems to be of this very file, which is no import.
-    fn from_here(&self, segments: &[String]) -> Module {
+    fn own(&self, segments: &[String]) -> Module {
         self.module.iter().chain(&self.inner).chain(segments).cloned().collect()
     }
 }
@@ -360,4 +360,23 @@ fn files_that_pages_name_are_there() {
     }
     assert!(named > 50, "only {named} files are named");
     assert!(missing.is_empty(), "these are not there:\n{}", missing.join("\n"));
+}
+
+/// The front page's table names tests as `gpu::features` or `reference::light::name`: each has to be there.
+#[test]
+fn tests_that_the_front_page_names_are_there() {
+    let page = std::fs::read_to_string(root().join("src/lib.rs")).expect("the front page");
+    let mut named = 0;
+    for quoted in
+        page.lines().filter(|line| line.starts_with("//! | ")).flat_map(|line| line.split('`').skip(1).step_by(2))
+    {
+        let parts: Vec<&str> = quoted.split("::").collect();
+        let (["gpu" | "reference", file] | ["gpu" | "reference", file, _]) = parts[..] else { continue };
+        named += 1;
+        let path = root().join("tests").join(parts[0]).join(file).with_extension("rs");
+        let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("`{quoted}`: {}: {e}", path.display()));
+        let function = parts.get(2).map(|name| format!("fn {name}("));
+        assert!(function.is_none_or(|function| text.contains(&function)), "`{quoted}` is not there");
+    }
+    assert!(named > 15, "only {named} tests are named");
 }

@@ -252,9 +252,9 @@ fn twins() -> Vec<(&'static str, f64)> {
     use layout::LuminaireKind;
     use luminaire::film::MOST_RADIANCE;
     use luminaire::gpu::bvh::{CwBvhNode, STACK_SIZE};
-    use luminaire::gpu::model::{directions_number, extinction_number, light_sampling_number};
     use luminaire::gpu::pack::luminaire as bounds;
     use luminaire::gpu::probe::Function;
+    use luminaire::gpu::specialization::{directions_number, extinction_number, light_sampling_number};
     use luminaire::reference::{luminaire as light, scatter};
     use luminaire::sampling::{PARTS, SENSOR_BLOCK};
     use luminaire::scene::{Directions, Extinction, Filter, LightSampling};
@@ -408,7 +408,7 @@ fn workgroups_have_the_host_s_sizes() {
 /// The specialization constants have the ids that the host gives them, by name.
 #[test]
 fn specialization_constants_have_the_host_s_order() {
-    use luminaire::gpu::model::{Features, KernelModel};
+    use luminaire::gpu::specialization::{Features, KernelModel};
     let expected: Vec<String> =
         Features::CONSTANTS.iter().chain(&KernelModel::CONSTANTS).map(|name| name.to_uppercase()).collect();
     for shader in SHADERS {

@@ -1,12 +1,12 @@
 //! A scene with everything else that a kernel is bound to.
 
-use super::buffer::Buffer;
-use super::device::Device;
-use super::kernel::Kernel;
-use super::recorder::Recorder;
 use super::scene::GpuScene;
-use super::shader::Shader;
-use super::submission::submit;
+use super::vulkan::buffer::Buffer;
+use super::vulkan::device::Device;
+use super::vulkan::kernel::Kernel;
+use super::vulkan::recorder::Recorder;
+use super::vulkan::shader::Shader;
+use super::vulkan::submission::submit;
 use crate::Result;
 use ash::vk;
 use bytemuck::Pod;

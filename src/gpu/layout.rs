@@ -236,7 +236,7 @@ shared! {
 }
 
 shared! {
-    /// Texture coordinates of a triangle (binding 9): two texels, which `uv_at` reads.
+    /// Texture coordinates of a triangle (binding 9): two texels, which `texture_coordinates` reads.
     TriangleUvs {
         /// Of the first corner.
         a: [f32; 2],

@@ -4,42 +4,29 @@
 //! A raw handle is wrapped the moment it exists, so an early return cannot leak it.
 
 pub mod accel;
-mod binding;
 mod bound_scene;
-mod budget;
-mod buffer;
 pub mod bvh;
-#[cfg(feature = "shaderc")]
-mod compile;
-mod device;
-mod instance;
-mod kernel;
 pub mod layout;
-pub mod model;
+mod memory_check;
 pub mod pack;
-mod physical_device;
 pub mod probe;
-mod ray_tracer;
-mod recorder;
 mod scene;
-mod shader;
-mod submission;
-mod texel_buffer;
+pub mod specialization;
+mod trace_rays;
 mod tracer;
-mod upload;
-mod validation;
+mod vulkan;
 
-pub use binding::Binding;
-pub use buffer::Buffer;
-pub use device::Device;
-pub use instance::Instance;
-pub use kernel::Kernel;
-pub use physical_device::PhysicalDevice;
-pub use ray_tracer::RayTracer;
-pub use shader::{SHADERS, Shader};
-pub use texel_buffer::TexelBuffer;
+pub use trace_rays::RayTracer;
 pub use tracer::GpuTracer;
-pub use validation::validation_messages;
+pub use vulkan::binding::Binding;
+pub use vulkan::buffer::Buffer;
+pub use vulkan::device::Device;
+pub use vulkan::instance::Instance;
+pub use vulkan::kernel::Kernel;
+pub use vulkan::physical_device::PhysicalDevice;
+pub use vulkan::shader::{SHADERS, Shader};
+pub use vulkan::texel_buffer::TexelBuffer;
+pub use vulkan::validation::validation_messages;
 
 #[cfg(feature = "shaderc")]
-pub use compile::folder as shader_folder;
+pub use vulkan::compile::folder as shader_folder;

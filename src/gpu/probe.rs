@@ -1,12 +1,12 @@
 //! Runs single shader functions over arrays, so that tests can hold each against its twin.
 
 use super::bound_scene::BoundScene;
-use super::buffer::Buffer;
-use super::device::Device;
-use super::kernel::Kernel;
 use super::layout::{self, ROW_WORKGROUP};
 use super::scene::GpuScene;
-use super::shader::Shader;
+use super::vulkan::buffer::Buffer;
+use super::vulkan::device::Device;
+use super::vulkan::kernel::Kernel;
+use super::vulkan::shader::Shader;
 use crate::Result;
 use crate::scene::Scene;
 use ash::vk;

@@ -1,17 +1,17 @@
 //! A scene as the kernels see it: buffers, converted from the plain data.
 
 use super::accel::Geometry;
-use super::binding::Binding;
-use super::budget::Budget;
-use super::buffer::Buffer;
-use super::device::Device;
 use super::layout;
-use super::model::KernelModel;
+use super::memory_check::Budget;
 use super::pack::frame::{aim, estimate, frame};
 use super::pack::luminaire::luminaires;
 use super::pack::material::material;
 use super::pack::texture::{environment, textures};
-use super::texel_buffer::TexelBuffer;
+use super::specialization::KernelModel;
+use super::vulkan::binding::Binding;
+use super::vulkan::buffer::Buffer;
+use super::vulkan::device::Device;
+use super::vulkan::texel_buffer::TexelBuffer;
 use crate::Result;
 use crate::scene::{FilmSettings, Integrator, LuminaireTable, Scene, Sensor};
 use ash::vk;

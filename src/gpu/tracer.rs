@@ -1,12 +1,12 @@
 //! The GPU tracer: a scene on a device, and the kernel that traces batches of it.
 
 use super::bound_scene::BoundScene;
-use super::device::Device;
-use super::kernel::Kernel;
 use super::layout::{self, TILE_WORKGROUP};
-use super::model::KernelModel;
 use super::scene::GpuScene;
-use super::shader::Shader;
+use super::specialization::KernelModel;
+use super::vulkan::device::Device;
+use super::vulkan::kernel::Kernel;
+use super::vulkan::shader::Shader;
 use crate::Result;
 use crate::film::{AovSum, Batch, PixelSum, Rays, SampleId, Tile};
 use crate::render::{SceneTracer, Traced, Tracer};

@@ -1,10 +1,13 @@
-//! What was rendered.
+//! What was rendered: all that samples depend on, so that samples of two pictures are never added up.
 
-use crate::scene::Scene;
+use crate::scene::{
+    Environment, EnvironmentImage, FilmSettings, Mesh, Object, RenderSettings, Scene, Texture, Triangle,
+};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::fmt::Debug;
+use std::sync::Arc;
 
 /// What was rendered: everything on which the samples depend. Two files of the same provenance hold samples of the same picture.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -32,44 +35,63 @@ pub struct Provenance {
 impl Provenance {
     /// That of a render of `scene`.
     pub fn of(scene: &Scene) -> Self {
+        // Every structure is taken apart by name here and below: what is new in one does not compile until somebody has decided whether samples depend on it.
+        let Scene {
+            path,
+            meshes,
+            objects,
+            materials,
+            textures,
+            luminaires,
+            environment,
+            sensor,
+            film,
+            integrator,
+            settings,
+            warnings: _,
+        } = scene;
+        let FilmSettings { width, height, filter, filter_radius } = *film;
+        let RenderSettings { spp: _, seed, exposure, sampler } = *settings;
         let digests = [
-            ("geometry", geometry(scene)),
+            ("geometry", geometry(meshes, objects)),
             (
                 "materials",
                 digest(|hash| {
-                    write(hash, &scene.materials);
-                    scene.textures.iter().for_each(|texture| {
-                        write(hash, &(texture.width, texture.height, texture.clamp));
-                        hash.update(bytemuck::cast_slice(&texture.texels));
-                    });
+                    write(hash, materials);
+                    for texture in textures {
+                        let Texture { name: _, width, height, texels, clamp } = &**texture;
+                        write(hash, &(width, height, clamp));
+                        hash.update(bytemuck::cast_slice(texels));
+                    }
                 }),
             ),
             (
                 "luminaires",
                 digest(|hash| {
-                    write(hash, &scene.luminaires);
-                    if let Some(environment) = &scene.environment {
-                        write(hash, &(environment.radiance, environment.rotation));
-                        if let Some(image) = &environment.image {
-                            write(hash, &(image.width, image.height));
-                            image.texels.iter().for_each(|texel| floats(hash, &texel.to_array()));
+                    write(hash, luminaires);
+                    if let Some(Environment { radiance, image, rotation }) = environment {
+                        write(hash, &(radiance, rotation));
+                        if let Some(image) = image {
+                            let EnvironmentImage { name: _, width, height, texels } = &**image;
+                            write(hash, &(width, height));
+                            texels.iter().for_each(|texel| floats(hash, &texel.to_array()));
                         }
                     }
                 }),
             ),
-            ("camera", digest(|hash| write(hash, &scene.sensor))),
-            ("pixel filter", digest(|hash| write(hash, &(scene.film.filter, scene.film.filter_radius)))),
+            ("camera", digest(|hash| write(hash, sensor))),
+            ("pixel filter", digest(|hash| write(hash, &(filter, filter_radius)))),
         ];
         Provenance {
             version: env!("CARGO_PKG_VERSION").into(),
-            scene: scene.path.display().to_string(),
-            width: scene.film.width,
-            height: scene.film.height,
-            seed: scene.settings.seed,
-            sampler: format!("{:?}", scene.settings.sampler),
-            integrator: format!("{:?}", scene.integrator),
+            scene: path.display().to_string(),
+            width,
+            height,
+            seed,
+            sampler: format!("{sampler:?}"),
+            integrator: format!("{integrator:?}"),
             digests: digests.map(|(name, value)| (name.to_owned(), value)).into(),
-            exposure: scene.settings.exposure,
+            exposure,
         }
     }
 
@@ -110,18 +132,19 @@ fn floats(hash: &mut Sha256, values: &[f32]) {
     values.iter().for_each(|value| hash.update(value.to_le_bytes()));
 }
 
-fn geometry(scene: &Scene) -> String {
+fn geometry(meshes: &[Arc<Mesh>], objects: &[Object]) -> String {
     digest(|hash| {
-        for mesh in &scene.meshes {
-            write(hash, &(mesh.positions.len(), mesh.normals.len(), mesh.uvs.len(), mesh.triangles.len()));
-            mesh.positions.iter().chain(&mesh.normals).for_each(|v| floats(hash, &v.to_array()));
-            mesh.uvs.iter().for_each(|v| floats(hash, &v.to_array()));
-            for triangle in &mesh.triangles {
-                triangle.vertices.iter().chain([&triangle.material]).for_each(|i| hash.update(i.to_le_bytes()));
+        for mesh in meshes {
+            let Mesh { name: _, positions, normals, uvs, triangles } = &**mesh;
+            write(hash, &(positions.len(), normals.len(), uvs.len(), triangles.len()));
+            positions.iter().chain(normals).for_each(|v| floats(hash, &v.to_array()));
+            uvs.iter().for_each(|v| floats(hash, &v.to_array()));
+            for Triangle { vertices, material } in triangles {
+                vertices.iter().chain([material]).for_each(|i| hash.update(i.to_le_bytes()));
             }
         }
-        for object in &scene.objects {
-            write(hash, &(object.mesh, object.object_to_world, object.material));
+        for Object { name: _, mesh, object_to_world, material } in objects {
+            write(hash, &(mesh, object_to_world, material));
         }
     })
 }

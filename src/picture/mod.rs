@@ -1,14 +1,14 @@
 //! Pictures on disk, without what made them: PNG to look at, EXR and HDR to compute with; reading them, and PFM, to compare; and images
 //! as textures and environments.
 
+pub(crate) mod decode;
+mod first_bytes;
 mod format;
-pub(crate) mod image_file;
 mod openexr;
 mod pfm;
 mod pixels;
 mod read;
 mod srgb;
-mod start;
 mod write;
 
 pub use format::{Format, check_output};

@@ -5,14 +5,17 @@
 //!
 //! | lecture | here |
 //! |---|---|
-//! | Surface Element Class | [`surfel`]: `Surfel`, `bsdf`; [`texture`]: `bilinear` |
+//! | Surface Element Class | [`surfel`]: `Surfel`; [`bsdf`]: `Surfel::bsdf`; [`texture`]: `bilinear` |
 //! | Lighting Functions, Shadows & Attenuation, Area Luminaires | [`luminaire`]: `direct_light`; [`environment`] |
-//! | Inefficient Integration, More Efficient Integration, Extinction | [`scatter`]: `scatter`, `bsdf_pdf`, `survival`; [`warp`] |
+//! | Inefficient Integration, More Efficient Integration | [`bsdf`]: `bsdf_direction`, `bsdf_pdf`; [`warp`] |
+//! | Extinction | [`scatter`]: `scatter`, `survival` |
 //! | Impulse Reflection, Adding Transmission | [`impulse`]: `fresnel`, `refract`, `impulses` |
 //! | Intersection Problems | [`intersect`], [`surfel`]: `offset_ray_origin` |
 //! | Sensor Modelling | [`sensor`]: `sensor_ray` |
 //! | Path Trace Function, A Simple Raytracer, Albedo Termination | [`path`]: `radiance` |
 
+mod aov;
+pub mod bsdf;
 pub mod environment;
 pub mod hit;
 pub mod impulse;

@@ -1,15 +1,13 @@
-//! Indirect light: which way a path goes on, and whether it does.
+//! Which way a path goes on from a surface, and whether it does: impulses, the BSDF, extinction.
 //!
 //! Three numbers decide. The third, as the slide "Impulse Reflection" has it, is first compared with the probability of an
 //! impulse; what is left of it decides between reflection and transmission, or between the lobes. The first two choose a
 //! direction in the lobe.
 
-use super::impulse::reflect;
+use super::bsdf::{bsdf_direction, bsdf_pdf};
 use super::surfel::{Surfel, mean};
-use super::warp::{cosine_hemisphere, glossy_half_vector, uniform_hemisphere};
 use crate::scene::{Directions, Estimator, Extinction};
 use glam::DVec3;
-use std::f64::consts::{PI, TAU};
 
 /// No surface lets every path live, so that every path ends.
 pub const MAX_SURVIVAL: f64 = 0.9999;
@@ -58,34 +56,10 @@ pub fn scatter(surfel: &Surfel, wo: DVec3, directions: Directions, [u, v, lobe]:
     }
 
     let lobe = (lobe - p) / (1.0 - p);
-    let n = surfel.shading_normal;
-    let wi = match directions {
-        Directions::Uniform => uniform_hemisphere(n, u, v),
-        Directions::Bsdf if lobe < glossy_share(surfel) => reflect(wo, glossy_half_vector(n, surfel.exponent, u, v)),
-        Directions::Cosine | Directions::Bsdf => cosine_hemisphere(n, u, v),
-    };
+    let wi = bsdf_direction(surfel, wo, directions, [u, v], lobe);
     let pdf = bsdf_pdf(surfel, wo, wi, directions);
-    let weight = if pdf > 0.0 { surfel.bsdf(wo, wi) * n.dot(wi) / pdf } else { DVec3::ZERO };
+    let weight = if pdf > 0.0 { surfel.bsdf(wo, wi) * surfel.shading_normal.dot(wi) / pdf } else { DVec3::ZERO };
     Scattered { wi, weight, pdf: Some(pdf), eta2: 1.0 }
-}
-
-/// The density with which [`scatter`] chooses `wi`, per steradian, out of all there is to choose from: impulses take their
-/// share. Zero where nothing is scattered to, though the glossy lobe chooses such directions too.
-pub fn bsdf_pdf(surfel: &Surfel, wo: DVec3, wi: DVec3, directions: Directions) -> f64 {
-    if !surfel.is_above(wi) || !surfel.scatters() {
-        return 0.0;
-    }
-    let n = surfel.shading_normal;
-    let cosine = n.dot(wi) / PI;
-    let pdf = match directions {
-        Directions::Uniform => 1.0 / TAU,
-        Directions::Cosine => cosine,
-        Directions::Bsdf => {
-            let g = glossy_share(surfel);
-            g * glossy_pdf(n, surfel.exponent, wo, wi) + (1.0 - g) * cosine
-        }
-    };
-    (1.0 - surfel.impulse_probability(&surfel.impulses(wo))) * pdf
 }
 
 /// The density with which a path goes on to `wi`, per steradian: it chooses that direction, and extinction lets it live. What the power
@@ -104,16 +78,4 @@ pub fn path_pdf(surfel: &Surfel, wo: DVec3, wi: DVec3, throughput: DVec3, estima
             (scattered.max_element() / SURE_THROUGHPUT).min(MAX_SURVIVAL * pdf)
         }
     }
-}
-
-/// Density of the direction `wi` in which [`glossy_half_vector`] reflects `wo`, per steradian.
-pub fn glossy_pdf(n: DVec3, m: f64, wo: DVec3, wi: DVec3) -> f64 {
-    let h = (wo + wi).normalize_or_zero();
-    let half_vector = (m + 1.0) / TAU * n.dot(h).max(0.0).powf(m);
-    half_vector / (4.0 * wo.dot(h).abs())
-}
-
-/// The probability of the glossy lobe among the two: its share of the albedo.
-fn glossy_share(surfel: &Surfel) -> f64 {
-    mean(surfel.glossy) / mean(surfel.lambert + surfel.glossy)
 }

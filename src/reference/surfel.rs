@@ -4,7 +4,6 @@ use super::hit::{Hit, interpolate, texture_coordinates};
 use super::rounding::gamma;
 use super::tracer::Reference;
 use glam::{DVec2, DVec3, Vec3};
-use std::f64::consts::PI;
 
 /// A surface element, seen from the direction `wo` (slide "Surface Element Class"); textures are already in its numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -106,41 +105,15 @@ impl Reference {
 }
 
 impl Surfel {
-    /// The scattering function without the cosine, per steradian: Lambert and normalised Blinn-Phong.
-    ///
-    /// Zero unless `wi` is above the triangle *and* above the shading normal's plane: light would leak through walls.
-    pub fn bsdf(&self, wo: DVec3, wi: DVec3) -> DVec3 {
-        if !self.is_above(wi) {
-            return DVec3::ZERO;
-        }
-        let mut f = self.lambert / PI;
-        if self.glossy != DVec3::ZERO {
-            let h = (wi + wo).normalize_or_zero();
-            let lobe = self.shading_normal.dot(h).max(0.0).powf(self.exponent);
-            f += self.glossy * (glossy_normalization(self.exponent) * lobe);
-        }
-        f
-    }
-
     /// Whether a direction is on the side of `wo`, of the triangle and of the shading normal's plane.
     pub fn is_above(&self, wi: DVec3) -> bool {
         self.geometric_normal.dot(wi) > 0.0 && self.shading_normal.dot(wi) > 0.0
-    }
-
-    /// Whether light is scattered in other ways than by impulses, so that light sampling makes sense.
-    pub fn scatters(&self) -> bool {
-        self.lambert != DVec3::ZERO || self.glossy != DVec3::ZERO
     }
 
     /// Where a ray that leaves in `direction` starts: far enough from the triangle's plane not to hit it again.
     pub fn offset_ray_origin(&self, direction: DVec3) -> DVec3 {
         offset_ray_origin(self.position, self.position_error, self.geometric_normal, direction)
     }
-}
-
-/// The factor that makes the glossy lobe's directional albedo 1 at normal incidence and less elsewhere, for `m >= 0`.
-pub fn glossy_normalization(m: f64) -> f64 {
-    (m + 2.0) * (m + 4.0) / (8.0 * PI * ((-0.5 * m).exp2() + m))
 }
 
 /// Bounds the rounding error of a point `b0 a + b1 b + b2 c` of a triangle, along each axis. The weights add up to 1, so

@@ -2,8 +2,8 @@
 
 use super::environment::EnvironmentDistribution;
 use super::luminaire::Luminaire;
+use super::material::Material;
 use super::mesh::{Mesh, Triangle, widen};
-use super::surface::Material;
 use super::world::Scene;
 use crate::sampling::AliasTable;
 use glam::{DVec3, Vec3};

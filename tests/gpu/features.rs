@@ -6,7 +6,7 @@ use super::*;
 use crate::common::scenes::*;
 use crate::common::statistics::*;
 use glam::Vec3;
-use luminaire::gpu::model::Features;
+use luminaire::gpu::specialization::Features;
 use luminaire::reference::Reference;
 use luminaire::scene::{AreaSampling, Directions, Estimator, Extinction, Integrator, LightSampling, Projection, Scene};
 

@@ -6,7 +6,7 @@
 //! seconds with over seconds without: 1.10 means that the switch saves 10 %.
 
 use luminaire::film::{Batch, Tile};
-use luminaire::gpu::model::{Features, KernelModel};
+use luminaire::gpu::specialization::{Features, KernelModel};
 use luminaire::gpu::{Device, GpuTracer, Instance};
 use luminaire::render::Tracer;
 use luminaire::scene::{self, Scene};

@@ -1,13 +1,13 @@
 //! Triangles and objects on a device, with what rays are traced against.
 
 use super::ray_query;
-use crate::gpu::binding::Binding;
 use crate::gpu::bvh::{MeshBvh, STACK_SIZE, TwoLevelBvh, spatial_order};
-use crate::gpu::device::Device;
 use crate::gpu::layout::Object;
-use crate::gpu::model::KernelModel;
 use crate::gpu::pack::triangle::{object, texture_coordinates, triangles, vertex_normals};
-use crate::gpu::texel_buffer::TexelBuffer;
+use crate::gpu::specialization::KernelModel;
+use crate::gpu::vulkan::binding::Binding;
+use crate::gpu::vulkan::device::Device;
+use crate::gpu::vulkan::texel_buffer::TexelBuffer;
 use crate::scene::Scene;
 use crate::{Error, Result};
 use ash::vk;

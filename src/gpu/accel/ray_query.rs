@@ -1,12 +1,12 @@
 //! Bottom-level acceleration structures of the meshes and a top-level one of the objects.
 
 use crate::Result;
-use crate::gpu::buffer::Buffer;
 use crate::gpu::bvh::MeshBvh;
-use crate::gpu::device::Device;
 use crate::gpu::layout::{Object, Triangle};
-use crate::gpu::submission::{barrier, submit};
-use crate::gpu::texel_buffer::TexelBuffer;
+use crate::gpu::vulkan::buffer::Buffer;
+use crate::gpu::vulkan::device::Device;
+use crate::gpu::vulkan::submission::{barrier, submit};
+use crate::gpu::vulkan::texel_buffer::TexelBuffer;
 use crate::scene::{self, Scene};
 use ash::vk;
 use gpu_allocator::MemoryLocation;

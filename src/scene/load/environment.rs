@@ -1,6 +1,6 @@
 //! The image of an environment.
 
-use crate::picture::image_file::ImageFile;
+use crate::picture::decode::ImageFile;
 use crate::scene::EnvironmentImage;
 use glam::Vec3;
 use std::path::Path;

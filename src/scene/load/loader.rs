@@ -1,7 +1,7 @@
 //! What is loaded of a scene, mesh by mesh and material by material.
 
-use super::draft::{Draft, DraftMaps};
-use super::text::shortened;
+use super::material_draft::{Draft, DraftMaps};
+use super::text_file::shortened;
 use super::texture::Textures;
 use super::{mtl, obj};
 use crate::Result;

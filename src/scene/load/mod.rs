@@ -1,12 +1,13 @@
 //! From a path to a [`Scene`].
 
-mod draft;
+mod bare_mesh;
 mod environment;
 mod loader;
+mod material_draft;
 mod mtl;
 mod obj;
-mod preview;
-mod text;
+mod polygon;
+mod text_file;
 mod texture;
 mod toml;
 
@@ -26,7 +27,7 @@ pub fn load(path: &Path) -> Result<Scene> {
     let ending = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
     let mut scene = match ending.as_str() {
         "toml" => toml::load(path)?,
-        "obj" => preview::load(path)?,
+        "obj" => bare_mesh::load(path)?,
         _ => {
             return Err(Error::Usage(format!(
                 "{}: not a scene; expected a scene file ending in .toml or a mesh ending in .obj",

@@ -1,6 +1,6 @@
 //! Textures: which file a map means, what its options change, and the texels that both tracers see.
 
-use crate::picture::image_file::{CHUNK, ImageFile};
+use crate::picture::decode::{CHUNK, ImageFile};
 use crate::scene::Texture;
 use glam::Vec3;
 use half::f16;

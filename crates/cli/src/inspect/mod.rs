@@ -7,7 +7,7 @@ use self::tables::{luminaires, materials, meshes, objects, rgb, textures};
 use crate::printing::print;
 use crate::table::table;
 use luminaire::Result;
-use luminaire::gpu::model::KernelModel;
+use luminaire::gpu::specialization::KernelModel;
 use luminaire::scene::{self, Environment, Mesh, Projection, Scene};
 use std::path::PathBuf;
 use std::process::ExitCode;

@@ -11,7 +11,7 @@ use crate::chart::{Axis, Point, Series};
 use glam::{Affine3A, DVec3, Vec3};
 use luminaire::Result;
 use luminaire::backend::Backend;
-use luminaire::reference::surfel::glossy_normalization;
+use luminaire::reference::bsdf::glossy_normalization;
 use luminaire::scene::build::{add, lamp, matte, quad};
 use luminaire::scene::{LightSampling, Luminaire, Material, Mesh, Scene};
 use std::f64::consts::PI;

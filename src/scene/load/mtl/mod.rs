@@ -4,8 +4,8 @@
 
 mod map_options;
 
-use super::draft::{DEFAULT_ETA, Draft, ETAS, LARGEST_EXPONENT, MapDraft};
-use super::text::{Tally, read_text, shortened};
+use super::material_draft::{DEFAULT_ETA, Draft, ETAS, LARGEST_EXPONENT, MapDraft};
+use super::text_file::{Tally, read_text, shortened};
 use crate::Result;
 use glam::Vec3;
 use std::collections::HashMap;

@@ -1,6 +1,6 @@
 //! The faces of an OBJ file, and the vertex normals that are made from them.
 
-use super::polygon::{self, Cut, Fault};
+use crate::scene::load::polygon::{self, Cut, Fault};
 use glam::{DVec3, Vec3};
 use std::collections::{BTreeMap, HashMap};
 

@@ -1,16 +1,15 @@
 //! A mesh from an OBJ file: one vertex of each triple of position, texture coordinate and normal.
 
 mod faces;
-mod polygon;
-mod text;
+mod statements;
 
-use super::text::read_text;
+use super::text_file::read_text;
 use crate::scene::{Mesh, Triangle};
 use crate::{Error, Result};
 use glam::{DVec3, Vec2, Vec3};
+use statements::ObjText;
 use std::collections::HashMap;
 use std::path::Path;
-use text::ObjText;
 
 /// A mesh and the names it refers to.
 #[derive(Debug)]
@@ -34,7 +33,7 @@ pub(super) struct Obj {
 /// If the file cannot be read, a line of it is wrong, or no triangle is left.
 pub(super) fn read(path: &Path, smooth: Option<f32>) -> Result<Obj> {
     // The text itself is given up here: what follows takes as much memory again.
-    let mut text = text::read(path, &read_text(path)?)?;
+    let mut text = statements::read(path, &read_text(path)?)?;
     let mut warnings = Vec::new();
     let has_normals = text.faces.corners.iter().any(|[_, _, normal]| *normal > 0);
     if smooth.is_some() && has_normals {

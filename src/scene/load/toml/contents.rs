@@ -1,12 +1,12 @@
 //! What a scene file puts into a scene: luminaires, materials, objects.
 
 use super::file::File;
-use super::tables::{LuminaireKind, LuminaireTable, MaterialTable, ObjectTable, Scale};
+use super::tables::{LuminaireEntry, LuminaireKind, MaterialTable, ObjectTable, Scale};
 use super::values::Triple;
-use crate::scene::load::draft::{Draft, DraftMaps, MapDraft};
 use crate::scene::load::loader::Loader;
+use crate::scene::load::material_draft::{Draft, DraftMaps, MapDraft};
 use crate::scene::load::obj;
-use crate::scene::load::text::{line_and_column, shortened};
+use crate::scene::load::text_file::{line_and_column, shortened};
 use crate::scene::load::texture::MapFile;
 use crate::scene::{Luminaire, Object};
 use crate::{Error, Result};
@@ -16,8 +16,8 @@ use std::collections::HashSet;
 use std::path::Path;
 
 impl File<'_> {
-    pub(super) fn luminaire(&self, table: &Spanned<LuminaireTable>) -> Result<Luminaire> {
-        let LuminaireTable { kind, position, intensity, direction, irradiance } = table.get_ref();
+    pub(super) fn luminaire(&self, table: &Spanned<LuminaireEntry>) -> Result<Luminaire> {
+        let LuminaireEntry { kind, position, intensity, direction, irradiance } = table.get_ref();
         match (kind, position, intensity, direction, irradiance) {
             (LuminaireKind::Point, Some(position), Some(intensity), None, None) => {
                 Ok(Luminaire::Point { position: position.0, intensity: intensity.0 })

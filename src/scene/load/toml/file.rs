@@ -1,7 +1,7 @@
 //! A scene file, and where in it something stands.
 
 use crate::Error;
-use crate::scene::load::text::line_and_column;
+use crate::scene::load::text_file::line_and_column;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 

@@ -6,9 +6,9 @@ mod settings;
 mod tables;
 mod values;
 
+use super::bare_mesh;
 use super::loader::Loader;
-use super::preview;
-use super::text::read_bytes;
+use super::text_file::read_bytes;
 use crate::scene::{Projection, RenderSettings, Scene, Sensor};
 use crate::{Error, Result};
 use file::File;
@@ -79,7 +79,7 @@ impl File<'_> {
             warnings: loader.warnings,
         };
         scene.sensor = sensor.unwrap_or_else(|| {
-            let sensor = preview::framing_sensor(&scene);
+            let sensor = bare_mesh::framing_sensor(&scene);
             scene.warnings.push(self.warning("no [sensor]; the camera is placed to frame the scene"));
             sensor
         });

@@ -2,7 +2,7 @@
 
 use super::file::File;
 use super::tables::{EnvironmentTable, FilmTable, IntegratorKind, IntegratorTable, SensorKind, SensorTable};
-use crate::scene::load::{environment, preview};
+use crate::scene::load::{bare_mesh, environment};
 use crate::scene::{Environment, Estimator, EstimatorChanges, FilmSettings, Integrator, Lens, Projection, Sensor};
 use crate::{Error, Result};
 use ::toml::Spanned;
@@ -13,11 +13,11 @@ use std::sync::Arc;
 impl File<'_> {
     /// The `[film]`.
     pub(super) fn film(&self, table: Option<Spanned<FilmTable>>) -> Result<FilmSettings> {
-        let Some(table) = table else { return Ok(preview::FILM) };
+        let Some(table) = table else { return Ok(bare_mesh::FILM) };
         let span = table.span();
         let table = table.into_inner();
-        let width = table.width.map_or(preview::FILM.width, |pixels| pixels.0);
-        let height = table.height.map_or(preview::FILM.height, |pixels| pixels.0);
+        let width = table.width.map_or(bare_mesh::FILM.width, |pixels| pixels.0);
+        let height = table.height.map_or(bare_mesh::FILM.height, |pixels| pixels.0);
         if u64::from(width) * u64::from(height) > u64::from(u32::MAX) {
             return Err(self.error(span, format!("a film of {width} x {height} has more than 2^32 - 1 pixels")));
         }

@@ -23,7 +23,7 @@ pub(super) struct SceneFile {
     #[serde(default)]
     pub material: Vec<MaterialTable>,
     #[serde(default)]
-    pub luminaire: Vec<Spanned<LuminaireTable>>,
+    pub luminaire: Vec<Spanned<LuminaireEntry>>,
 }
 
 #[derive(Deserialize)]
@@ -142,7 +142,7 @@ pub(super) struct MaterialTable {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct LuminaireTable {
+pub(super) struct LuminaireEntry {
     pub kind: LuminaireKind,
     pub position: Option<Triple>,
     pub intensity: Option<Colour>,

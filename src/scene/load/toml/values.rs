@@ -1,7 +1,7 @@
 //! Numbers of a scene file that are checked as they are read, so that an error points at the very value.
 
 use crate::scene::Estimator;
-use crate::scene::load::draft::{ETAS, LARGEST_EXPONENT};
+use crate::scene::load::material_draft::{ETAS, LARGEST_EXPONENT};
 use glam::{DVec3, Vec3};
 use serde::Deserialize;
 

@@ -1,7 +1,6 @@
-//! What surfaces are made of: materials and the textures on them.
+//! What surfaces are made of.
 
-use glam::{DVec3, Vec3};
-use half::f16;
+use glam::Vec3;
 
 /// The surface's scattering and emission: normalised Blinn-Phong (slide "Surface Element Class") and impulses (slides "Impulse
 /// Reflection", "Adding Transmission").
@@ -56,22 +55,6 @@ pub struct Maps {
     pub opacity: Option<u32>,
 }
 
-/// An image on surfaces, bilinear between texel centres.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Texture {
-    /// A name for messages: the file name.
-    pub name: String,
-    /// Width in texels, at least 1.
-    pub width: u32,
-    /// Height in texels, at least 1.
-    pub height: u32,
-    /// Linear RGB and alpha, from the upper left, row by row; not negative, finite. Half floats: both tracers see these very
-    /// numbers (11 bits; 8-bit sRGB loses at most 0.05 %).
-    pub texels: Vec<[f16; 4]>,
-    /// Coordinates outside [0, 1] stay at the border instead of repeating (`-clamp on`).
-    pub clamp: bool,
-}
-
 impl Default for Material {
     /// Black and opaque.
     fn default() -> Self {
@@ -102,13 +85,5 @@ impl Material {
     /// Whether a ray may pass the surface as if it were not there.
     pub fn has_holes(&self) -> bool {
         self.opacity < 1.0 || self.maps.opacity.is_some()
-    }
-}
-
-impl Texture {
-    /// The mean of the colours, unweighted by alpha.
-    pub fn mean(&self) -> DVec3 {
-        let sum: DVec3 = self.texels.iter().map(|[r, g, b, _]| DVec3::new(r.to_f64(), g.to_f64(), b.to_f64())).sum();
-        sum / self.texels.len() as f64
     }
 }

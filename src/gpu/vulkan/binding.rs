@@ -18,7 +18,7 @@ pub enum Binding<'a> {
 
 impl Binding<'_> {
     /// The kind of descriptor that it takes.
-    pub(super) fn descriptor_type(&self) -> vk::DescriptorType {
+    pub(in crate::gpu) fn descriptor_type(&self) -> vk::DescriptorType {
         match self {
             Binding::Uniform(_) => vk::DescriptorType::UNIFORM_BUFFER,
             Binding::Storage(_) => vk::DescriptorType::STORAGE_BUFFER,

@@ -4,8 +4,8 @@
 //! corner lacks so that the normals of a mesh no longer belong to its vertices, and wants every vertex coloured if one is.
 
 use super::faces::Faces;
-use super::polygon::{Fault, MOST_CORNERS};
-use crate::scene::load::text::{Tally, logical_lines, shortened};
+use crate::scene::load::polygon::{Fault, MOST_CORNERS};
+use crate::scene::load::text_file::{Tally, logical_lines, shortened};
 use crate::{Error, Result};
 use glam::{Vec2, Vec3};
 use std::collections::HashMap;

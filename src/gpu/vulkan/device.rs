@@ -16,18 +16,18 @@ pub struct Device {
     // Freed by hand in `drop`: before the device, after every buffer.
     allocator: ManuallyDrop<Mutex<Allocator>>,
     queue: Mutex<vk::Queue>,
-    pub(super) queue_family: u32,
+    pub(in crate::gpu) queue_family: u32,
     acceleration_structure: Option<khr::acceleration_structure::Device>,
     debug_utils: Option<ext::debug_utils::Device>,
     /// Which bits of a timestamp count; none without timestamps.
-    pub(super) timestamp_mask: u64,
+    pub(in crate::gpu) timestamp_mask: u64,
     hung: AtomicBool,
     pub(crate) limits: vk::PhysicalDeviceLimits,
     pub(crate) scratch_alignment: u64,
     pub(crate) max_instances: u64,
     pub(crate) max_primitives: u64,
     /// Bytes of its largest device-local heap.
-    pub(super) memory: u64,
+    pub(in crate::gpu) memory: u64,
     /// Name of the device.
     pub name: String,
     /// True for a driver that runs on the CPU.
@@ -126,16 +126,16 @@ impl Device {
         self.allocator().generate_report().total_allocated_bytes
     }
 
-    pub(super) fn allocator(&self) -> MutexGuard<'_, Allocator> {
+    pub(in crate::gpu) fn allocator(&self) -> MutexGuard<'_, Allocator> {
         self.allocator.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    pub(super) fn queue(&self) -> MutexGuard<'_, vk::Queue> {
+    pub(in crate::gpu) fn queue(&self) -> MutexGuard<'_, vk::Queue> {
         self.queue.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Records that a submission never ended: from now on nothing may be freed, because the device may still use it.
-    pub(super) fn set_hung(&self) {
+    pub(in crate::gpu) fn set_hung(&self) {
         self.hung.store(true, Ordering::SeqCst);
     }
 

@@ -7,7 +7,7 @@ use std::path::Path;
 ///
 /// # Errors
 /// In words that can follow the file's name: it cannot be read, or is a folder, a pipe or a device.
-pub(super) fn start_of(path: &Path) -> Result<Vec<u8>, String> {
+pub(super) fn first_bytes(path: &Path) -> Result<Vec<u8>, String> {
     let about = std::fs::metadata(path).map_err(|e| e.to_string())?;
     if !about.is_file() {
         // A pipe or a device may never end.

@@ -10,7 +10,7 @@ pub fn folder() -> PathBuf {
 }
 
 /// SPIR-V of the shader that is shipped as `name`.
-pub(super) fn compile(name: &str) -> Result<Vec<u32>> {
+pub(in crate::gpu) fn compile(name: &str) -> Result<Vec<u32>> {
     let folder = folder();
     let (stem, ray_query) = match name.strip_suffix("_ray_query") {
         Some(stem) => (stem, true),

@@ -1,13 +1,13 @@
 //! An intersector by itself: rays in, distances out, timed by the device.
 
 use super::bound_scene::BoundScene;
-use super::buffer::Buffer;
-use super::device::Device;
-use super::kernel::Kernel;
 use super::layout::{self, ROW_WORKGROUP};
 use super::probe::Call;
 use super::scene::GpuScene;
-use super::shader::Shader;
+use super::vulkan::buffer::Buffer;
+use super::vulkan::device::Device;
+use super::vulkan::kernel::Kernel;
+use super::vulkan::shader::Shader;
 use crate::Result;
 use crate::scene::Scene;
 use std::ops::Range;

@@ -14,7 +14,7 @@ pub struct Shader {
 
 macro_rules! shader {
     ($name:literal) => {
-        Shader { name: $name, spirv: include_bytes!(concat!("../../shaders/spirv/", $name, ".spv")) }
+        Shader { name: $name, spirv: include_bytes!(concat!("../../../shaders/spirv/", $name, ".spv")) }
     };
 }
 
@@ -33,34 +33,34 @@ pub const SHADERS: [Shader; 8] = [
 
 impl Shader {
     /// The path tracer.
-    pub(super) fn path_trace(ray_query: bool) -> &'static Shader {
+    pub(in crate::gpu) fn path_trace(ray_query: bool) -> &'static Shader {
         &SHADERS[usize::from(ray_query)]
     }
 
     /// The probe.
-    pub(super) fn probe(ray_query: bool) -> &'static Shader {
+    pub(in crate::gpu) fn probe(ray_query: bool) -> &'static Shader {
         &SHADERS[2 + usize::from(ray_query)]
     }
 
     /// What only traces rays.
-    pub(super) fn trace_rays(ray_query: bool) -> &'static Shader {
+    pub(in crate::gpu) fn trace_rays(ray_query: bool) -> &'static Shader {
         &SHADERS[4 + usize::from(ray_query)]
     }
 
     /// The first hits of camera rays.
-    pub(super) fn aov(ray_query: bool) -> &'static Shader {
+    pub(in crate::gpu) fn aov(ray_query: bool) -> &'static Shader {
         &SHADERS[6 + usize::from(ray_query)]
     }
 
     /// The shipped SPIR-V words.
     #[cfg(not(feature = "shaderc"))]
-    pub(super) fn code(&self) -> Result<Cow<'static, [u32]>> {
+    pub(in crate::gpu) fn code(&self) -> Result<Cow<'static, [u32]>> {
         Ok(Cow::Owned(bytemuck::pod_collect_to_vec(self.spirv)))
     }
 
     /// The SPIR-V words of the GLSL as it stands on disk now.
     #[cfg(feature = "shaderc")]
-    pub(super) fn code(&self) -> Result<Cow<'static, [u32]>> {
+    pub(in crate::gpu) fn code(&self) -> Result<Cow<'static, [u32]>> {
         super::compile::compile(self.name).map(Cow::Owned)
     }
 }

@@ -8,22 +8,22 @@ use ash::vk;
 use bytemuck::Pod;
 
 /// Records the three parts of every kernel run, with the barriers between them.
-pub(super) struct Recorder<'a> {
-    pub(super) device: &'a Device,
-    pub(super) cmd: vk::CommandBuffer,
+pub(in crate::gpu) struct Recorder<'a> {
+    pub(in crate::gpu) device: &'a Device,
+    pub(in crate::gpu) cmd: vk::CommandBuffer,
     /// Where [`Recorder::read_back`] copies to.
-    pub(super) readback: &'a Buffer,
+    pub(in crate::gpu) readback: &'a Buffer,
 }
 
 impl Recorder<'_> {
     /// Fills a buffer with zeros, before the kernel.
-    pub(super) fn clear(&self, buffer: &Buffer) {
+    pub(in crate::gpu) fn clear(&self, buffer: &Buffer) {
         // SAFETY: called while the commands are being recorded; the buffer is alive until the submission has ended.
         unsafe { self.device.raw.cmd_fill_buffer(self.cmd, buffer.raw, 0, vk::WHOLE_SIZE, 0) };
     }
 
     /// Runs the kernel on what was cleared.
-    pub(super) fn dispatch(&self, kernel: &Kernel, push: &impl Pod, groups: [u32; 3]) {
+    pub(in crate::gpu) fn dispatch(&self, kernel: &Kernel, push: &impl Pod, groups: [u32; 3]) {
         let shader_access = vk::AccessFlags::SHADER_READ | vk::AccessFlags::SHADER_WRITE;
         let written = (vk::PipelineStageFlags::TRANSFER, vk::AccessFlags::TRANSFER_WRITE);
         barrier(self.device, self.cmd, written, (vk::PipelineStageFlags::COMPUTE_SHADER, shader_access));
@@ -34,7 +34,7 @@ impl Recorder<'_> {
     }
 
     /// Copies the first `size` bytes of a buffer to an offset in the memory that the host reads after the submission.
-    pub(super) fn read_back(&self, from: &Buffer, size: u64, offset: u64) {
+    pub(in crate::gpu) fn read_back(&self, from: &Buffer, size: u64, offset: u64) {
         let copy = [vk::BufferCopy { src_offset: 0, dst_offset: offset, size }];
         // SAFETY: called while the commands are being recorded; both buffers are alive until the submission has ended, and
         // the callers' ranges lie inside them.

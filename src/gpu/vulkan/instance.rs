@@ -12,7 +12,7 @@ pub(crate) const API_VERSION: u32 = vk::API_VERSION_1_2;
 pub struct Instance {
     /// For those who call Vulkan themselves, as the window does.
     pub raw: ash::Instance,
-    pub(super) debug_utils: bool,
+    pub(in crate::gpu) debug_utils: bool,
     messenger: Option<(ext::debug_utils::Instance, vk::DebugUtilsMessengerEXT)>,
     /// The loader. Last, so that the library stays loaded until everything else is gone.
     pub entry: ash::Entry,

@@ -1,8 +1,8 @@
 //! Images from disk, as textures and environments need them: OpenEXR, and whatever the `image` crate decodes.
 
+use super::first_bytes::first_bytes;
 use super::openexr;
 use super::srgb::linear;
-use super::start::start_of;
 use crate::memory::{available, gib};
 use half::f16;
 use image::{DynamicImage, ImageDecoder, ImageError, ImageReader, Limits};
@@ -55,7 +55,7 @@ impl ImageFile {
     /// # Errors
     /// In words that can follow the file's name: it cannot be read, is no image, is damaged, or is too large.
     pub(crate) fn open(path: &Path, most: u64, too_many: impl FnOnce(u64) -> String) -> Result<Self, String> {
-        if start_of(path)? == openexr::MAGIC {
+        if first_bytes(path)? == openexr::MAGIC {
             return Self::open_exr(path, most, too_many);
         }
         let mut reader =

@@ -1,8 +1,8 @@
 //! Whether a scene fits into the memory of a device, before anything is uploaded.
 
-use super::device::Device;
 use super::layout;
-use super::model::KernelModel;
+use super::specialization::KernelModel;
+use super::vulkan::device::Device;
 use crate::memory::{available, gib};
 use crate::scene::Scene;
 use crate::{Error, Result};

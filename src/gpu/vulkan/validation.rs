@@ -5,7 +5,7 @@ use std::ffi::{CStr, c_void};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The layer that checks every call.
-pub(super) const LAYER: &CStr = c"VK_LAYER_KHRONOS_validation";
+pub(in crate::gpu) const LAYER: &CStr = c"VK_LAYER_KHRONOS_validation";
 
 /// Counts the messages.
 static VALIDATION_MESSAGES: AtomicUsize = AtomicUsize::new(0);
@@ -17,7 +17,7 @@ pub fn validation_messages() -> usize {
 }
 
 /// Asks for warnings and errors of the validation layer; [`on_message`] gets them.
-pub(super) fn messenger_info() -> vk::DebugUtilsMessengerCreateInfoEXT<'static> {
+pub(in crate::gpu) fn messenger_info() -> vk::DebugUtilsMessengerCreateInfoEXT<'static> {
     vk::DebugUtilsMessengerCreateInfoEXT::default()
         .message_severity(vk::DebugUtilsMessageSeverityFlagsEXT::WARNING | vk::DebugUtilsMessageSeverityFlagsEXT::ERROR)
         .message_type(vk::DebugUtilsMessageTypeFlagsEXT::VALIDATION | vk::DebugUtilsMessageTypeFlagsEXT::PERFORMANCE)

@@ -11,7 +11,7 @@ const STORAGE_BUFFERS: u32 = 5;
 
 /// A device that the loader knows, with what it offers.
 pub struct PhysicalDevice {
-    pub(super) instance: Arc<Instance>,
+    pub(in crate::gpu) instance: Arc<Instance>,
     /// For those who call Vulkan themselves, as the window does.
     pub raw: vk::PhysicalDevice,
     /// Index in the loader's order, as `--device` takes it.
@@ -30,12 +30,12 @@ pub struct PhysicalDevice {
     pub ray_tracing_pipeline: bool,
     /// Bytes of the largest device-local heap.
     pub memory: u64,
-    pub(super) queue_family: Option<u32>,
-    pub(super) timestamp_mask: u64,
-    pub(super) limits: vk::PhysicalDeviceLimits,
-    pub(super) scratch_alignment: u64,
-    pub(super) max_instances: u64,
-    pub(super) max_primitives: u64,
+    pub(in crate::gpu) queue_family: Option<u32>,
+    pub(in crate::gpu) timestamp_mask: u64,
+    pub(in crate::gpu) limits: vk::PhysicalDeviceLimits,
+    pub(in crate::gpu) scratch_alignment: u64,
+    pub(in crate::gpu) max_instances: u64,
+    pub(in crate::gpu) max_primitives: u64,
 }
 
 impl Instance {

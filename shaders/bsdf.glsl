@@ -1,0 +1,43 @@
+// The BSDF without its impulses: normalised Blinn-Phong (slide "Surface Element Class"; what its lines get wrong is put right here), and
+// how directions are chosen (slides "Inefficient Integration", "More Efficient Integration").
+
+// The probability that the glossy lobe chooses a direction that no impulse chose.
+float glossy_share(Material material) {
+    if (!GLOSSY) return 0.0;
+    float glossy = mean(material.glossy);
+    return glossy > 0.0 ? glossy / (glossy + mean(material.lambert)) : 0.0;
+}
+
+// f(wo, wi), without the cosine, in rgb; w: the density per steradian with which bsdf_direction gives wi. All zero where the two
+// normals disagree about the side of wi: light would leak through walls.
+vec4 bsdf_and_pdf(Surfel s, Material material, vec3 wo, vec3 wi) {
+    float cosine = dot(s.shading_normal, wi);
+    if (dot(s.geometric_normal, wi) <= 0.0 || cosine <= 0.0) return vec4(0.0);
+    vec3 f = material.lambert * (1.0 / PI);
+    float pdf = DIRECTIONS == DIRECTIONS_UNIFORM ? 0.5 / PI : cosine * (1.0 / PI);
+    if (GLOSSY && material.glossy != vec3(0.0)) {
+        vec3 h = normalize(wi + wo);
+        // cos^m: near the normal by the sine, because rounding a cosine of nearly 1 shows m times.
+        vec3 sine = cross(s.shading_normal, h);
+        float sine2 = dot(sine, sine);
+        float log_cosine = sine2 < 0.5 ? 0.5 * log_one_minus(sine2) : log(max(dot(s.shading_normal, h), 1e-18));
+        float m = material.exponent;
+        float lobe = exp(m * log_cosine);
+        f += material.glossy * (material.normalisation * lobe);
+        if (DIRECTIONS == DIRECTIONS_BSDF) {
+            float half_vector = (m + 1.0) * (0.5 / PI) * lobe / (4.0 * abs(dot(wo, h)));
+            pdf = mix(pdf, half_vector, glossy_share(material));
+        }
+    }
+    return vec4(f, pdf);
+}
+
+// A direction for indirect light; `choice` in [0, 1) picks the lobe.
+vec3 bsdf_direction(Surfel s, Material material, vec3 wo, vec2 u, float choice) {
+    if (DIRECTIONS == DIRECTIONS_UNIFORM) return from_frame(s.shading_normal, uniform_hemisphere(u));
+    if (GLOSSY && DIRECTIONS == DIRECTIONS_BSDF && choice < glossy_share(material)) {
+        vec3 h = from_frame(s.shading_normal, glossy_half_vector(material.exponent, u));
+        return reflect_direction(wo, h);
+    }
+    return from_frame(s.shading_normal, cosine_hemisphere(u));
+}

@@ -1,0 +1,31 @@
+//! What the camera sees first; its twin is `shaders/aov.comp`.
+
+use super::tracer::Reference;
+use crate::film::AovSum;
+use crate::sampling::ray_salt;
+use glam::DVec3;
+use std::ops::Range;
+
+impl Reference {
+    /// What the camera rays of these samples of a pixel hit first, added up.
+    pub fn first_hits(&self, pixel: u32, samples: Range<u32>) -> AovSum {
+        let sensor = &self.scene.sensor;
+        let position = sensor.position.as_dvec3();
+        let forward = (sensor.target.as_dvec3() - position).normalize();
+        let (mut albedo, mut normal, mut depth, mut hits) = (DVec3::ZERO, DVec3::ZERO, 0.0, 0);
+        for sample in samples {
+            let (origin, direction) = self.sensor_ray(pixel, sample);
+            let salt = ray_salt(pixel, sample, 0, self.scene.settings.seed);
+            let Some(hit) = self.closest_hit(origin, direction, f64::INFINITY, salt) else { continue };
+            let surfel = self.surfel(&hit, -direction);
+            // Of a dielectric either the one or the other.
+            let transmission = if surfel.eta.is_some() { surfel.transmission } else { DVec3::ZERO };
+            albedo += surfel.lambert + surfel.glossy + surfel.reflection.max(transmission);
+            normal += surfel.shading_normal;
+            depth += (surfel.position - position).dot(forward);
+            hits += 1;
+        }
+        let [albedo, normal] = [albedo, normal].map(|v| v.as_vec3().to_array());
+        AovSum { albedo, depth: depth as f32, normal, hits }
+    }
+}

@@ -1,0 +1,79 @@
+//! The BSDF without its impulses: its value, its directions and their density, which belong together. Lambert and normalised Blinn-Phong (slide "Surface
+//! Element Class"); how directions are chosen (slides "Inefficient Integration", "More Efficient Integration").
+
+use super::impulse::reflect;
+use super::surfel::{Surfel, mean};
+use super::warp::{cosine_hemisphere, glossy_half_vector, uniform_hemisphere};
+use crate::scene::Directions;
+use glam::DVec3;
+use std::f64::consts::{PI, TAU};
+
+impl Surfel {
+    /// The scattering function without the cosine, per steradian: Lambert and normalised Blinn-Phong.
+    ///
+    /// Zero unless `wi` is above the triangle *and* above the shading normal's plane: light would leak through walls.
+    pub fn bsdf(&self, wo: DVec3, wi: DVec3) -> DVec3 {
+        if !self.is_above(wi) {
+            return DVec3::ZERO;
+        }
+        let mut f = self.lambert / PI;
+        if self.glossy != DVec3::ZERO {
+            let h = (wi + wo).normalize_or_zero();
+            let lobe = self.shading_normal.dot(h).max(0.0).powf(self.exponent);
+            f += self.glossy * (glossy_normalization(self.exponent) * lobe);
+        }
+        f
+    }
+
+    /// Whether light is scattered in other ways than by impulses, so that light sampling makes sense.
+    pub fn scatters(&self) -> bool {
+        self.lambert != DVec3::ZERO || self.glossy != DVec3::ZERO
+    }
+}
+
+/// The factor that makes the glossy lobe's directional albedo 1 at normal incidence and less elsewhere, for `m >= 0`.
+pub fn glossy_normalization(m: f64) -> f64 {
+    (m + 2.0) * (m + 4.0) / (8.0 * PI * ((-0.5 * m).exp2() + m))
+}
+
+/// A direction that the BSDF without its impulses scatters to: two numbers choose it within a lobe, which `lobe` chooses, all in [0, 1). [`bsdf_pdf`] is its
+/// density.
+pub fn bsdf_direction(surfel: &Surfel, wo: DVec3, directions: Directions, [u, v]: [f64; 2], lobe: f64) -> DVec3 {
+    let n = surfel.shading_normal;
+    match directions {
+        Directions::Uniform => uniform_hemisphere(n, u, v),
+        Directions::Bsdf if lobe < glossy_share(surfel) => reflect(wo, glossy_half_vector(n, surfel.exponent, u, v)),
+        Directions::Cosine | Directions::Bsdf => cosine_hemisphere(n, u, v),
+    }
+}
+
+/// The density with which [`scatter`](super::scatter::scatter) chooses `wi`, per steradian, out of all there is to choose from: impulses take their
+/// share. Zero where nothing is scattered to, though the glossy lobe chooses such directions too.
+pub fn bsdf_pdf(surfel: &Surfel, wo: DVec3, wi: DVec3, directions: Directions) -> f64 {
+    if !surfel.is_above(wi) || !surfel.scatters() {
+        return 0.0;
+    }
+    let n = surfel.shading_normal;
+    let cosine = n.dot(wi) / PI;
+    let pdf = match directions {
+        Directions::Uniform => 1.0 / TAU,
+        Directions::Cosine => cosine,
+        Directions::Bsdf => {
+            let g = glossy_share(surfel);
+            g * glossy_pdf(n, surfel.exponent, wo, wi) + (1.0 - g) * cosine
+        }
+    };
+    (1.0 - surfel.impulse_probability(&surfel.impulses(wo))) * pdf
+}
+
+/// Density of the direction `wi` in which [`glossy_half_vector`] reflects `wo`, per steradian.
+pub fn glossy_pdf(n: DVec3, m: f64, wo: DVec3, wi: DVec3) -> f64 {
+    let h = (wo + wi).normalize_or_zero();
+    let half_vector = (m + 1.0) / TAU * n.dot(h).max(0.0).powf(m);
+    half_vector / (4.0 * wo.dot(h).abs())
+}
+
+/// The probability of the glossy lobe among the two: its share of the albedo.
+fn glossy_share(surfel: &Surfel) -> f64 {
+    mean(surfel.glossy) / mean(surfel.lambert + surfel.glossy)
+}
