@@ -1,4 +1,4 @@
-//! What the kernel models for a scene: no more than the scene needs.
+//! Specialization constants: the kernel models no more than a scene needs.
 
 use crate::scene::{
     AreaSampling, Directions, Extinction, Integrator, LightSampling, Luminaire, LuminaireTable, Material, Projection,

@@ -1,4 +1,4 @@
-//! Writes and reads a part.
+//! Writes and reads one part of a render, or goes on from it.
 
 use super::provenance::Provenance;
 use crate::film::{Film, SampleId};

@@ -1,4 +1,4 @@
-//! Joins parts.
+//! Joins parts of one render.
 
 use super::file::{about, read};
 use super::provenance::Provenance;

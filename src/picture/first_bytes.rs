@@ -1,4 +1,4 @@
-//! What a file seems to be, before it is read.
+//! The first bytes of a file, by which its format is known, before the rest is read.
 
 use std::io::Read;
 use std::path::Path;

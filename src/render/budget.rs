@@ -1,4 +1,4 @@
-//! How much a tracer does at a time.
+//! How many samples a tracer takes in one batch, by how fast it is.
 
 /// Samples (over all pixels) of the first batch: few, because each may be a path of ten thousand bounces.
 const FIRST_BUDGET: u64 = 64;

@@ -1,4 +1,4 @@
-//! What the loop asks of a tracer.
+//! `Tracer`, `SceneTracer`: what the loop asks of whoever traces.
 
 use crate::Result;
 use crate::film::{AovSum, Batch, PixelSum, SampleId, Tile};

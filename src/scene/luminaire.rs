@@ -1,4 +1,4 @@
-//! Luminaires without an area.
+//! Points and parallel light: luminaires without an area. What has one is a triangle whose material emits.
 
 use glam::Vec3;
 

@@ -1,4 +1,4 @@
-//! Triangles, and where they stand.
+//! `Mesh`, `Triangle`, and `Object`, which is where a mesh stands.
 
 use glam::{Affine3A, DAffine3, DMat3, Vec2, Vec3};
 

@@ -1,4 +1,4 @@
-//! The scene as a whole.
+//! `Scene`: the scene as a whole.
 
 use super::widen;
 use super::{

@@ -1,4 +1,4 @@
-//! Sensor and estimator.
+//! Sensor and estimator, as the kernel has them.
 
 use crate::gpu::layout;
 use crate::scene::{FilmSettings, Integrator, LuminaireTable, Projection, Scene, Sensor};

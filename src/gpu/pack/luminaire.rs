@@ -1,4 +1,4 @@
-//! The luminaire table.
+//! The luminaire table, as the kernel has it.
 
 use crate::gpu::bvh::MeshBvh;
 use crate::gpu::layout::{self, LuminaireKind};

@@ -1,4 +1,4 @@
-//! Materials.
+//! Materials, as the kernel has them.
 
 use crate::gpu::layout;
 use crate::scene::{LuminaireTable, Material, Scene};

@@ -1,4 +1,4 @@
-//! Images: textures and the environment.
+//! Textures and the environment, as the kernel has them.
 
 use crate::gpu::layout;
 use crate::scene::{Environment, EnvironmentDistribution, Texture};

@@ -1,4 +1,4 @@
-//! What a kernel is bound to.
+//! One thing that a kernel reads or writes: a buffer, texels, or an acceleration structure.
 
 use super::buffer::Buffer;
 use super::texel_buffer::TexelBuffer;

@@ -1,4 +1,4 @@
-//! Reads every number of a file that this program has written.
+//! Reads every number of an OpenEXR file that this program has written.
 
 use super::{Values, in_words};
 use crate::picture::pixels::{MOST_PIXELS, too_large};

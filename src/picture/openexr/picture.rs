@@ -1,4 +1,4 @@
-//! Reads the picture of a file that any program may have written.
+//! Reads the picture of an OpenEXR file that any program may have written.
 
 use super::{ERROR, in_words};
 use crate::picture::pixels::{MOST_PIXELS, Picture, too_large};

@@ -1,3 +1,5 @@
+//! Every kind of OpenEXR file: written and read, of other programs, cropped, damaged.
+
 use super::*;
 use crate::picture::Picture;
 use ::exr::image::write::WritableImage;

@@ -1,4 +1,4 @@
-//! Writes a picture.
+//! Writes a picture as OpenEXR.
 
 use super::{ERROR, Values};
 use ::exr::image::write::WritableImage;

@@ -1,4 +1,4 @@
-//! What is loaded of a scene, mesh by mesh and material by material.
+//! The loader: meshes, materials and textures that a scene has loaded so far, each file once.
 
 use super::material_draft::{Draft, DraftMaps};
 use super::text_file::shortened;

@@ -1,4 +1,4 @@
-//! What a scene file puts into a scene: luminaires, materials, objects.
+//! The tables `[[luminaire]]`, `[[material]]` and `[[object]]` of a scene file.
 
 use super::file::File;
 use super::tables::{LuminaireEntry, LuminaireKind, MaterialTable, ObjectTable, Scale};

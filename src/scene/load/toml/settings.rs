@@ -1,4 +1,4 @@
-//! How a scene file is seen and rendered: film, sensor, environment, integrator.
+//! The tables `[film]`, `[sensor]`, `[environment]` and `[integrator]` of a scene file.
 
 use super::file::File;
 use super::tables::{EnvironmentTable, FilmTable, IntegratorKind, IntegratorTable, SensorKind, SensorTable};
