@@ -30,7 +30,7 @@ impl Mesh {
 pub struct Triangle {
     /// Indices into [`Mesh::positions`] (and [`Mesh::normals`]).
     pub vertices: [u32; 3],
-    /// Index into [`Scene::materials`].
+    /// Index into [`Scene::materials`](crate::scene::Scene::materials).
     pub material: u32,
 }
 
@@ -39,7 +39,7 @@ pub struct Triangle {
 pub struct Object {
     /// A name for messages.
     pub name: String,
-    /// Index into [`Scene::meshes`].
+    /// Index into [`Scene::meshes`](crate::scene::Scene::meshes).
     pub mesh: u32,
     /// Object space to world space; invertible, may mirror and scale unevenly.
     pub object_to_world: Affine3A,

@@ -4,7 +4,7 @@ use super::{ERROR, in_words};
 use crate::picture::pixels::{MOST_PIXELS, Picture, too_large};
 use ::exr::meta::MetaData;
 use ::exr::meta::header::Header;
-use ::exr::prelude::{AnyChannel, AnyChannels, FlatSamples, Layer, ReadChannels, ReadLayers, read};
+use ::exr::prelude::{ReadChannels, ReadLayers, ReadSpecificChannel, read};
 use std::path::Path;
 
 /// What to do with a file that holds several pictures.
@@ -22,6 +22,8 @@ pub(in crate::picture) struct Opened<'a> {
     path: &'a Path,
     choice: Choice,
     window: Window,
+    /// Blocks of the part with the picture.
+    chunks: u64,
 }
 
 /// Which channels of a file are the picture.
@@ -43,11 +45,14 @@ impl<'a> Opened<'a> {
         let meta = MetaData::read_from_file(path, false).map_err(in_words)?;
         let choice = choose(&meta.headers, several)?;
         let window = Window::new(&meta.headers[choice.part])?;
-        let opened = Opened { path, choice, window };
-        for header in &meta.headers {
-            opened.check(header)?;
+        // The library takes the first part that has the channel.
+        let red = &choice.rgb[0];
+        let has_red = |header: &Header| header.channels.list.iter().any(|channel| channel.name.to_string() == *red);
+        if meta.headers[..choice.part].iter().any(has_red) {
+            return Err(format!("several of its parts have a channel {red}: write the picture to a file of its own"));
         }
-        Ok(opened)
+        let header = &meta.headers[choice.part];
+        Ok(Opened { path, choice, window, chunks: header.chunk_count as u64 })
     }
 
     /// Width and height in pixels.
@@ -60,37 +65,20 @@ impl<'a> Opened<'a> {
         self.choice.alpha.is_some()
     }
 
-    /// Refuses what the file is too short for, or what is enormous.
-    fn check(&self, header: &Header) -> Result<(), String> {
-        // Every block has its place in a table, and a head of its own.
-        let least = header.chunk_count as u64 * 16;
-        if std::fs::metadata(self.path).is_ok_and(|about| about.len() < least) {
-            return Err("it is truncated: its table of blocks is longer than the file".into());
-        }
-        let samples = header.layer_size.area() as u64 * header.channels.list.len() as u64;
-        if header.layer_size.area() as u64 > MOST_PIXELS || samples > 4 * MOST_PIXELS {
-            return Err(too_large(header.layer_size.width() as u64, header.layer_size.height() as u64));
-        }
-        Ok(())
-    }
-
     /// The picture. Integers are taken as the numbers they are, luminance alone as grey; alpha is left out, since colours are stored as
     /// they are over black.
     ///
     /// # Errors
     /// In words that can follow the file's name; a crop is one, since what is outside is not known.
     pub(in crate::picture) fn picture(&self) -> Result<Picture, String> {
-        self.window.check_whole()?;
-        let layer = self.layer()?;
-        let planes = |names: &[String; 3]| -> Result<Vec<[f32; 3]>, String> {
-            let mut out = vec![[0.0; 3]; self.window.width * self.window.height];
-            for (channel, name) in names.iter().enumerate() {
-                self.each_sample(&layer, name, |pixel, value| out[pixel][channel] = value)?;
-            }
-            Ok(out)
-        };
         let (width, height) = self.size();
-        let (rgb, error) = (planes(&self.choice.rgb)?, self.choice.error.as_ref().map(planes).transpose()?);
+        let sizes = [(width as usize, height as usize), self.window.stored].map(|(w, h)| (w as u64, h as u64));
+        if let Some((width, height)) = sizes.into_iter().find(|(w, h)| w.saturating_mul(*h) > MOST_PIXELS) {
+            return Err(too_large(width, height));
+        }
+        self.window.check_whole()?;
+        let colours = |names: &[String; 3]| self.read(names, None, |[r, g, b, _]| [r, g, b]);
+        let (rgb, error) = (colours(&self.choice.rgb)?, self.choice.error.as_ref().map(colours).transpose()?);
         Ok(Picture { width, height, rgb, error, clamped: false })
     }
 
@@ -99,47 +87,49 @@ impl<'a> Opened<'a> {
     /// # Errors
     /// In words that can follow the file's name.
     pub(in crate::picture) fn rgba(&self) -> Result<Vec<f32>, String> {
-        let layer = self.layer()?;
-        let alpha = if self.has_alpha() { 0.0 } else { 1.0 };
-        let mut out = [0.0, 0.0, 0.0, alpha].repeat(self.window.width * self.window.height);
-        for (channel, name) in self.choice.rgb.iter().enumerate() {
-            self.each_sample(&layer, name, |pixel, value| out[4 * pixel + channel] = value)?;
-        }
-        if let Some(name) = &self.choice.alpha {
-            self.each_sample(&layer, name, |pixel, value| out[4 * pixel + 3] = value)?;
-        }
-        Ok(out)
+        Ok(self.read(&self.choice.rgb, self.choice.alpha.as_deref(), |rgba| rgba)?.into_flattened())
     }
 
-    fn layer(&self) -> Result<Layer<AnyChannels<FlatSamples>>, String> {
+    /// What `pixel` makes of red, green, blue and alpha of every pixel that is shown; no other channel and no other part takes memory. Outside of a crop all are 0,
+    /// and so is alpha in a file that has it.
+    fn read<T: Copy + 'static>(
+        &self,
+        names: &[String; 3],
+        alpha: Option<&str>,
+        pixel: fn([f32; 4]) -> T,
+    ) -> Result<Vec<T>, String> {
+        // Every block has its place in a table, and a head of its own.
+        if std::fs::metadata(self.path).is_ok_and(|about| about.len() < 16 * self.chunks) {
+            return Err("it is truncated: its table of blocks is longer than the file".into());
+        }
+        let window = self.window;
+        let outside = pixel([0.0, 0.0, 0.0, if alpha.is_some() { 0.0 } else { 1.0 }]);
+        let [r, g, b] = names.each_ref().map(|name| &name[..]);
+        // The library wants different names. No channel has these, so that what is asked for has the value that stands beside it.
+        let grey = r == g;
+        let [g, b] = if grey { ["no channel: green", "no channel: blue"] } else { [g, b] };
         let image = read()
             .no_deep_data()
             .largest_resolution_level()
-            .all_channels()
-            .all_layers()
+            .specific_channels()
+            .required(r)
+            .optional(g, 0.0)
+            .optional(b, 0.0)
+            .optional(alpha.unwrap_or("no channel: alpha"), 1.0)
+            .collect_pixels(
+                move |_, _| vec![outside; window.width * window.height],
+                move |pixels: &mut Vec<T>, at, (r, g, b, a): (f32, f32, f32, f32)| {
+                    if let Some(index) = window.index(at.x(), at.y()) {
+                        let [g, b] = if grey { [r; 2] } else { [g, b] };
+                        pixels[index] = pixel([r, g, b, a]);
+                    }
+                },
+            )
+            .first_valid_layer()
             .all_attributes()
             .from_file(self.path)
             .map_err(in_words)?;
-        image.layer_data.into_iter().nth(self.choice.part).ok_or_else(|| "the part with the picture is missing".into())
-    }
-
-    /// Calls `take` with the index of a pixel and its number, for every pixel that is stored and shown.
-    fn each_sample(
-        &self,
-        layer: &Layer<AnyChannels<FlatSamples>>,
-        name: &str,
-        mut take: impl FnMut(usize, f32),
-    ) -> Result<(), String> {
-        let found = layer.channel_data.list.iter().find(|channel: &&AnyChannel<_>| channel.name.to_string() == name);
-        let plane = found.ok_or_else(|| format!("its channel {name} cannot be read"))?;
-        let window = &self.window;
-        for (y, row) in window.rows() {
-            for (x, column) in window.columns() {
-                let value = plane.sample_data.value_by_flat_index(row * layer.size.width() + column);
-                take(y * window.width + x, value.to_f32());
-            }
-        }
-        Ok(())
+        Ok(image.layer_data.channel_data.pixels)
     }
 }
 
@@ -199,7 +189,7 @@ fn choose(headers: &[Header], several: Several) -> Result<Choice, String> {
 }
 
 /// Where the stored pixels lie and which are shown.
-#[derive(Debug)]
+#[derive(Debug, Clone, Copy)]
 struct Window {
     /// Size of what is shown.
     width: usize,
@@ -221,9 +211,6 @@ impl Window {
         if width == 0 || height == 0 {
             return Err("it has no pixels".into());
         }
-        if (width as u64).saturating_mul(height as u64) > MOST_PIXELS {
-            return Err(too_large(width as u64, height as u64));
-        }
         Ok(Window { width, height, stored: (size.width(), size.height()), left, top })
     }
 
@@ -241,20 +228,11 @@ impl Window {
         Ok(())
     }
 
-    /// Rows that are stored and shown: as shown, and as stored.
-    fn rows(&self) -> impl Iterator<Item = (usize, usize)> {
-        both(self.height, self.top, self.stored.1)
+    /// Which of the shown pixels a stored one is, if any.
+    fn index(&self, column: usize, row: usize) -> Option<usize> {
+        let inside = |stored: usize, offset: i64, shown: usize| {
+            usize::try_from(stored as i64 - offset).ok().filter(|at| *at < shown)
+        };
+        Some(inside(row, self.top, self.height)? * self.width + inside(column, self.left, self.width)?)
     }
-
-    /// Columns that are stored and shown: as shown, and as stored.
-    fn columns(&self) -> impl Iterator<Item = (usize, usize)> {
-        both(self.width, self.left, self.stored.0)
-    }
-}
-
-/// The `i` below `shown` for which `i + offset` is within what is stored.
-fn both(shown: usize, offset: i64, stored: usize) -> impl Iterator<Item = (usize, usize)> {
-    let first = (-offset).clamp(0, shown as i64);
-    let end = (stored as i64 - offset).clamp(first, shown as i64);
-    (first..end).map(move |i| (i as usize, (i + offset) as usize))
 }

@@ -168,6 +168,8 @@ fn four_channels() {
     assert_eq!((size, alpha, &texels[4..8]), ((3, 2), true, &[1.0, 11.0, 21.0, 31.0][..]));
     let (_, alpha, texels) = rgba(&plain(vec![part("a", &["Y"]), part("b", &["R", "G", "B"])]));
     assert_eq!((alpha, &texels[4..8]), (false, &[1.0, 11.0, 21.0, 1.0][..]));
+    std::fs::write(&path, plain(vec![part("a", &["R"]), part("b", &["R", "G", "B"])])).unwrap();
+    assert!(Opened::new(&path, Several::First).unwrap_err().contains("several of its parts have a channel R"));
     let mut layer = part("a", &["R", "G", "B", "A"]);
     layer.attributes.layer_position = Vec2(1, -1);
     // Its lower row lies in the upper one of what is shown, one to the right.

@@ -5,7 +5,7 @@ use crate::scene::load::text_file::line_and_column;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// A scene file being turned into a [`Scene`].
+/// A scene file being turned into a [`Scene`](crate::scene::Scene).
 pub(super) struct File<'a> {
     pub path: &'a Path,
     pub text: &'a str,
