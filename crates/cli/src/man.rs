@@ -1,6 +1,6 @@
 //! `luminaire man`: manual pages, from the definition that `--help` shows.
 
-use crate::printing::print;
+use crate::shared::printing::print;
 use clap::Command;
 use clap_mangen::Man;
 use clap_mangen::roff::{Roff, bold, roman};

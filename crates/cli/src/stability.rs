@@ -1,9 +1,9 @@
 //! `luminaire stability`.
 
-use crate::figures::duration;
-use crate::links::seen_from;
-use crate::printing::{self, note, print};
-use crate::table::table;
+use crate::shared::printing::{self, note, print};
+use crate::shared::relative_path::seen_from;
+use crate::shared::table::table;
+use crate::shared::units::duration;
 use luminaire::files::{check_writable, save_text};
 use luminaire::{Error, Result};
 use luminaire_measure::Workbench;

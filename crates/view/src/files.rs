@@ -1,7 +1,7 @@
 //! The files that the window writes: numbered, so that none replaces another.
 
+use super::develop::develop;
 use super::news::News;
-use super::picture::develop;
 use super::sensor_table::to_toml;
 use super::shown::Shown;
 use super::wanted::{Saved, Wanted};

@@ -1,6 +1,6 @@
 //! What the worker has for the window.
 
-use super::picture::Developed;
+use super::develop::Developed;
 use luminaire::Result;
 
 /// What the worker sends to the window.

@@ -1,15 +1,15 @@
 //! The thread that traces: it follows what the window wants, and sends what there is to see.
 
+use super::develop::develop;
 use super::estimators::Estimators;
-use super::figures::figures;
 use super::files::{save_camera, save_picture};
 use super::first_hit::{FirstHit, FirstHits};
 use super::lane::{Lane, Stage};
 use super::link::{Inbox, Link};
 use super::news::{Frame, News};
 use super::options::Options;
-use super::picture::develop;
 use super::shown::Shown;
+use super::title::figures;
 use super::wanted::{Order, Saved, Wanted};
 use luminaire::backend::{self, Backend, Request};
 use luminaire::render::SceneTracer;

@@ -1,7 +1,7 @@
 //! What has changed since the baseline.
 
-use crate::printing::print;
-use crate::table::table;
+use crate::shared::printing::print;
+use crate::shared::table::table;
 use luminaire::{Error, Result};
 use luminaire_measure::bench::{Baseline, Report, Verdict};
 

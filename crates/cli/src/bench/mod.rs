@@ -5,11 +5,11 @@ mod options;
 
 pub use self::options::Options;
 
-use crate::backend_name::BackendName;
-use crate::figures::duration;
-use crate::interrupts;
-use crate::links::seen_from;
-use crate::printing::{self, Notes, note, print, warn};
+use crate::shared::backend_name::BackendName;
+use crate::shared::interrupts;
+use crate::shared::printing::{self, Notes, note, print, warn};
+use crate::shared::relative_path::seen_from;
+use crate::shared::units::duration;
 use luminaire::files::{check_writable, save_text};
 use luminaire::picture;
 use luminaire::{Error, Result};

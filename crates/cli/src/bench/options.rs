@@ -1,6 +1,6 @@
 //! What to measure, and what to compare it with.
 
-use crate::backend_name::BackendName;
+use crate::shared::backend_name::BackendName;
 use luminaire_measure::bench::{Effort, SECTIONS, check_estimator};
 use std::path::PathBuf;
 

@@ -5,8 +5,8 @@ mod tables;
 
 use self::flip::Flip;
 use self::tables::{Source, describe, number};
-use crate::printing::{self, print, warn};
-use crate::values::{limit, stops};
+use crate::shared::printing::{self, print, warn};
+use crate::shared::values::{limit, stops};
 use luminaire::files;
 use luminaire::picture::{self, Picture};
 use luminaire::{Error, Result};

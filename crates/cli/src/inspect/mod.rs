@@ -4,8 +4,8 @@ mod integrator;
 mod tables;
 
 use self::tables::{luminaires, materials, meshes, objects, rgb, textures};
-use crate::printing::print;
-use crate::table::table;
+use crate::shared::printing::print;
+use crate::shared::table::table;
 use luminaire::Result;
 use luminaire::gpu::model::KernelModel;
 use luminaire::scene::{self, Environment, Mesh, Projection, Scene};

@@ -2,7 +2,7 @@
 
 use super::options::Options;
 use super::outputs::is_exr;
-use crate::printing::Notes;
+use crate::shared::printing::Notes;
 use luminaire::part::{self, Provenance};
 use luminaire::render::Rendered;
 use luminaire::scene::Scene;

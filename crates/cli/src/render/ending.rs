@@ -1,10 +1,10 @@
-//! The end of a render: its files, its messages and its exit code.
+//! The steps after tracing, in their order: warn, have the files written, print the summary, choose the exit code.
 
 use super::outcome::Outcome;
 use super::{outputs, summary};
-use crate::exit_codes::{DEVICE_FAILED, INTERRUPTED};
-use crate::interrupts;
-use crate::printing::{self, Notes, print};
+use crate::shared::exit_codes::{DEVICE_FAILED, INTERRUPTED};
+use crate::shared::interrupts;
+use crate::shared::printing::{self, Notes, print};
 use luminaire::Result;
 use luminaire::render::{End, Rendered};
 use luminaire::scene::Scene;

@@ -1,4 +1,4 @@
-//! The files that a render leaves, except for its checkpoint.
+//! The files of a render except for its checkpoint: their names are checked before it, and they are written after it.
 
 use super::options::Options;
 use super::outcome::Outcome;

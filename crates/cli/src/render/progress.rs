@@ -1,7 +1,7 @@
 //! How far a render is: a bar on a terminal, plain lines elsewhere.
 
-use crate::figures::{duration, percent};
-use crate::printing::note;
+use crate::shared::printing::note;
+use crate::shared::units::{duration, percent};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use luminaire::render::Progress;
 use std::io::IsTerminal;

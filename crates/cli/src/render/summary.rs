@@ -1,7 +1,7 @@
-//! What is printed at the end of a render.
+//! The text on stdout after a render: its files, the estimated error, times and speed.
 
 use super::outcome::Outcome;
-use crate::figures::{duration, percent};
+use crate::shared::units::{duration, percent};
 use luminaire::render::End;
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! `--width` and `--height`.
+//! The size of a film after `--width` and `--height`, which each subcommand defines with its own limits.
 
 use luminaire::scene::FilmSettings;
 

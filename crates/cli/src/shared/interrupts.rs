@@ -1,7 +1,7 @@
-//! Ctrl-C and SIGTERM.
+//! What Ctrl-C and SIGTERM do to a run.
 
-use crate::exit_codes::INTERRUPTED;
-use crate::printing::Notes;
+use crate::shared::exit_codes::INTERRUPTED;
+use crate::shared::printing::Notes;
 use luminaire::{Error, Result};
 use std::sync::atomic::{AtomicBool, Ordering};
 

@@ -1,4 +1,4 @@
-//! Links of pages to folders.
+//! The relative path by which a page links to a folder.
 
 use std::path::{Component, Path};
 
