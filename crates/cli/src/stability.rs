@@ -112,7 +112,7 @@ fn write(folder: &Path, sweep: &Definition, done: &Sweep) -> Result<()> {
         .try_for_each(|chart| save_text(&folder.join(format!("{}-{}.svg", sweep.name, chart.name)), &chart.svg()))
 }
 
-/// The command that makes the page again.
+/// The command line that makes the page again; the page shows it.
 fn command(options: &Options) -> String {
     let mut words = vec!["luminaire stability".to_owned()];
     words.extend(options.sweeps.iter().cloned());

@@ -13,7 +13,7 @@
 //! |---|---|
 //! | `window`, `events`, `app` | the window's life; what the window system reports; what that changes |
 //! | `keys`, `input`, `camera`, `ball` | what keys do, what is held down, and where it takes the camera |
-//! | `overlay`, `message` | words on the picture |
+//! | `overlay`, `message` | text over the picture |
 //! | `present`, `chain`, `device`, `surface` | pictures into the window |
 //! | `link`, `wanted`, `news`, `sight`, `shown` | what goes between window and worker |
 //! | `worker`, `lane`, `estimators`, `first_hit` | tracing |

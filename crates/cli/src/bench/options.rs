@@ -84,7 +84,7 @@ impl Options {
         }
     }
 
-    /// The command that makes the page again.
+    /// The command line that makes the page again; the page shows it.
     pub fn command(&self) -> String {
         let mut words = vec!["luminaire bench".to_owned()];
         let path = |option: &str, path: &PathBuf| format!("--{option} {}", path.display());

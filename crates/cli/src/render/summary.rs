@@ -5,7 +5,7 @@ use crate::shared::units::{duration, percent};
 use luminaire::render::End;
 use std::path::PathBuf;
 
-/// Where the files are, how long it took, and how fast it was.
+/// The summary; `written` are the pictures that were written.
 pub fn summary(outcome: &Outcome, written: &[PathBuf]) -> String {
     let Outcome { options, rendered, seconds, .. } = outcome;
     let progress = &rendered.progress;
