@@ -1,6 +1,6 @@
 //! `luminaire completions`.
 
-use crate::printing::print;
+use crate::shared::printing::print;
 use clap_complete::Shell;
 use luminaire::Result;
 use std::process::ExitCode;

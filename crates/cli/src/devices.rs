@@ -1,7 +1,7 @@
 //! `luminaire devices`.
 
-use crate::printing::{self, print};
-use crate::table::table;
+use crate::shared::printing::{self, print};
+use crate::shared::table::table;
 use luminaire::Result;
 use luminaire::backend::{self, DeviceReport};
 use std::process::ExitCode;

@@ -2,32 +2,24 @@
 
 #![allow(rustdoc::invalid_html_tags, reason = "doc comments of options are their help, where <NAME> stands for a name")]
 
-mod backend_name;
 mod bench;
 mod compare;
 mod completions;
 mod devices;
-mod estimator;
-mod exit_codes;
-mod figures;
-mod film_size;
 mod inspect;
-mod interrupts;
-mod links;
 mod man;
 mod merge;
-mod printing;
 mod render;
+mod shared;
 mod stability;
-mod table;
-mod values;
 mod view;
 
 #[cfg(test)]
 mod tests;
 
 use clap::{CommandFactory, Parser};
-use exit_codes::EXIT_CODES;
+use shared::exit_codes::EXIT_CODES;
+use shared::printing;
 use std::process::ExitCode;
 
 /// Before the exit codes in `--help`.

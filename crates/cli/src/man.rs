@@ -1,6 +1,6 @@
 //! `luminaire man`: manual pages, from the definition that `--help` shows.
 
-use crate::printing::print;
+use crate::shared::printing::print;
 use clap::Command;
 use clap_mangen::Man;
 use clap_mangen::roff::{Roff, bold, roman};
@@ -89,7 +89,7 @@ fn page(command: &Command) -> Page {
     Page { name: man.get_filename(), text: String::from_utf8_lossy(&text).into_owned() }
 }
 
-/// The sections that stand behind the options in `--help`, by the names that they have in manual pages.
+/// The text that follows the options in `--help`, under the headings that manual pages use.
 fn end(command: &Command) -> Roff {
     let help = command.get_after_help().map(ToString::to_string).unwrap_or_default();
     let mut roff = Roff::new();

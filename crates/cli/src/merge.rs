@@ -1,8 +1,8 @@
 //! `luminaire merge`.
 
-use crate::figures::percent;
-use crate::printing::print;
-use crate::values::stops;
+use crate::shared::printing::print;
+use crate::shared::units::percent;
+use crate::shared::values::stops;
 use luminaire::{Error, Result, files, part, picture};
 use std::path::PathBuf;
 use std::process::ExitCode;

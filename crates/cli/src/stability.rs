@@ -1,9 +1,9 @@
 //! `luminaire stability`.
 
-use crate::figures::duration;
-use crate::links::seen_from;
-use crate::printing::{self, note, print};
-use crate::table::table;
+use crate::shared::printing::{self, note, print};
+use crate::shared::relative_path::seen_from;
+use crate::shared::table::table;
+use crate::shared::units::duration;
 use luminaire::files::{check_writable, save_text};
 use luminaire::{Error, Result};
 use luminaire_measure::Workbench;
@@ -112,7 +112,7 @@ fn write(folder: &Path, sweep: &Definition, done: &Sweep) -> Result<()> {
         .try_for_each(|chart| save_text(&folder.join(format!("{}-{}.svg", sweep.name, chart.name)), &chart.svg()))
 }
 
-/// The command that makes the page again.
+/// The command line that makes the page again; the page shows it.
 fn command(options: &Options) -> String {
     let mut words = vec!["luminaire stability".to_owned()];
     words.extend(options.sweeps.iter().cloned());

@@ -1,10 +1,10 @@
 //! `luminaire view`.
 
-use crate::backend_name::{self, BackendName};
-use crate::estimator::EstimatorOptions;
-use crate::film_size::FilmSize;
-use crate::printing::warn;
-use crate::values::stops;
+use crate::shared::backend_name::{self, BackendName};
+use crate::shared::estimator::EstimatorOptions;
+use crate::shared::film_size::FilmSize;
+use crate::shared::printing::warn;
+use crate::shared::values::stops;
 use luminaire::Result;
 use luminaire::film::Film;
 use luminaire::scene;

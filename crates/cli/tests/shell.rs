@@ -1,4 +1,4 @@
-//! What a shell and `man` get from the program: scripts on standard output, pages in a folder.
+//! What the program says about itself: `--help` and `--version`, scripts for shells, manual pages.
 
 use std::process::{Command, Output};
 
@@ -38,4 +38,32 @@ fn manual_pages_are_printed_or_written() {
     let failed = luminaire(&["man", file.to_str().unwrap()]);
     assert_eq!(failed.status.code(), Some(1));
     assert!(String::from_utf8_lossy(&failed.stderr).starts_with("error: cannot write"), "{failed:?}");
+}
+
+#[test]
+fn help_and_version() {
+    let output = luminaire(&["--help"]);
+    assert_eq!(output.status.code(), Some(0));
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert!(said.contains("Exit codes:") && said.contains("Examples:") && said.contains("130"), "{said}");
+    let output = luminaire(&["--version"]);
+    assert!(String::from_utf8_lossy(&output.stdout).starts_with("luminaire "), "{output:?}");
+}
+
+#[test]
+fn the_help_explains_estimators() {
+    let output = luminaire(&["render", "--help"]);
+    let said = String::from_utf8_lossy(&output.stdout);
+    for name in ["simple", "default", "no-light-sampling", "uniform", "cosine", "literal-extinction", "threshold"] {
+        assert!(said.contains(&format!("  {name}  ")), "{name} is not explained in\n{said}");
+    }
+}
+
+#[test]
+fn the_help_names_both_samplers() {
+    let output = luminaire(&["render", "--help"]);
+    let said = String::from_utf8_lossy(&output.stdout);
+    let sampler = &said[said.find("--sampler").expect("the option")..];
+    let sampler = sampler.split("\n\n").next().unwrap();
+    assert!(sampler.contains("independent") && sampler.contains("sobol"), "{sampler}");
 }

@@ -1,4 +1,4 @@
-//! What the window shows and wants, and what changes it.
+//! The state of the window, and every change to it: the camera moves, a key was pressed, the worker sent something, time passed.
 
 use super::ball::Ball;
 use super::camera;
@@ -24,29 +24,29 @@ use winit::dpi::PhysicalSize;
 use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
 use winit::window::Window;
 
-/// The camera rests when it has not moved for so long.
+/// After so long without a move the camera counts as resting.
 const REST: Duration = Duration::from_millis(150);
 /// A picture that could not be shown is tried again after this.
 const RETRY: Duration = Duration::from_millis(100);
 
 /// The window, all that belongs to it, and the worker.
 pub struct App {
-    /// Of the scene, for the title.
+    /// The scene's name, for the title.
     name: String,
     ball: Ball,
-    /// The camera to come back to.
+    /// The scene's own camera, to which R and Home return.
     start: Sensor,
     pub(super) wanted: Wanted,
     link: Arc<Link>,
-    /// Until the window is there.
+    /// What the window is opened for; taken when it opens.
     options: Option<(Options, EventLoopProxy<News>)>,
     worker: Option<JoinHandle<()>>,
-    // Before the window.
+    // Declared before `window`, so that it is dropped first.
     presenter: Option<Presenter>,
     window: Option<Arc<Window>>,
     frame: Option<Frame>,
     pub(super) input: Input,
-    /// When the camera last moved, until it rests.
+    /// When the camera last moved; none once it rests.
     moved: Option<Instant>,
     help: bool,
     message: Option<Message>,
@@ -56,7 +56,7 @@ pub struct App {
 }
 
 impl App {
-    /// Without a window yet. The worker's news come through `proxy`.
+    /// Has no window yet ([`App::open`]). The worker's news come through `proxy`.
     pub fn new(options: Options, proxy: EventLoopProxy<News>) -> Self {
         let wanted = Wanted {
             sight: Sight { sensor: options.scene.sensor.clone(), film: options.scene.film },
@@ -100,7 +100,7 @@ impl App {
         self.presenter = Some(Presenter::new(&window)?);
         self.resize(window.inner_size());
         self.window = Some(window);
-        // The event loop is gone only when nobody wants to know any more.
+        // Sending fails only when the event loop has ended, and then nobody needs the news.
         let send = move |news| drop(proxy.send_event(news));
         self.worker = Some(worker::start(options, self.link.clone(), send)?);
         Ok(())
@@ -127,7 +127,7 @@ impl App {
         event_loop.exit();
     }
 
-    /// Has the picture drawn soon.
+    /// Asks the window system to have the picture drawn again.
     pub fn redraw(&self) {
         if let Some(window) = &self.window {
             window.request_redraw();
@@ -162,7 +162,7 @@ impl App {
         }
     }
 
-    /// Does what a key stands for.
+    /// Carries out what a key stands for.
     pub fn act(&mut self, event_loop: &ActiveEventLoop, action: Action) {
         match action {
             Action::Expose(by) => {
@@ -207,7 +207,7 @@ impl App {
                     window.set_title(&format!("{}: {shown}{} - luminaire", self.name, frame.figures));
                 }
                 if self.frame.replace(frame).is_none() {
-                    // What was said while the window was black.
+                    // With the first picture, messages about the wait for it are over.
                     self.message = None;
                 }
                 self.redraw();
@@ -218,7 +218,7 @@ impl App {
                 self.say(&text);
             }
             News::Done(text) => {
-                // A reader that has gone away misses it.
+                // A stdout that nobody reads is no reason to fail.
                 let mut out = std::io::stdout().lock();
                 let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
                 self.say(&format!("wrote {}", text.lines().next().unwrap_or_default()));
@@ -228,7 +228,7 @@ impl App {
         }
     }
 
-    /// Draws the picture, and what is written on it.
+    /// Draws the picture, with the help and the message over it.
     pub fn draw(&mut self) -> Result<()> {
         let (Some(presenter), Some(window)) = (&mut self.presenter, &self.window) else { return Ok(()) };
         let (frame, help, message) = (&self.frame, self.help, &self.message);
@@ -250,7 +250,8 @@ impl App {
         Ok(())
     }
 
-    /// Does what time brings: a flight, a camera that comes to rest, a message that goes. When there is more of it, if no event comes before.
+    /// Does what is due: a step of a flight, a camera that comes to rest, a message that goes, another try to show the picture. Returns when it has
+    /// to be called again if no event comes before; none: only events bring more to do.
     pub fn pass_time(&mut self) -> Option<Instant> {
         if let Some(sensor) = self.input.fly(&self.wanted.sight.sensor, self.ball.radius) {
             self.place(sensor);

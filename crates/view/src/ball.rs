@@ -1,4 +1,4 @@
-//! Where the scene is, and how large.
+//! The ball around a scene: where it is, and how large.
 
 use glam::DVec3;
 use luminaire::scene::Scene;
@@ -11,7 +11,7 @@ pub const NEAREST: f64 = 1e-5;
 pub struct Ball {
     /// Its middle, in world space.
     pub center: DVec3,
-    /// In the scene's unit; never 0.
+    /// Its radius in the scene's unit; never 0.
     pub radius: f64,
 }
 

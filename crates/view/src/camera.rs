@@ -5,9 +5,9 @@ use glam::{DQuat, DVec2, DVec3};
 use luminaire::scene::{Projection, Sensor};
 use std::f64::consts::PI;
 
-/// The line of sight stays so far from straight up and down, in radians.
+/// The smallest angle between the line of sight and straight up or down, in radians.
 const POLE: f64 = 0.01;
-/// No coordinate is larger: squares of such must stay far from the end of `f32`.
+/// The largest coordinate: its square is still far below the largest `f32`.
 const FARTHEST: f64 = 1e15;
 
 /// The axes of a sensor's picture.
@@ -37,11 +37,11 @@ impl Axes {
     }
 }
 
-/// A sensor with another eye point and target; as it was if the two were one point in single precision, or they would be too far away.
+/// A sensor with another eye point and target. It stays as it was if the two would be the same point in single precision, or too far away.
 fn placed(sensor: &Sensor, position: DVec3, target: DVec3) -> Sensor {
     let reach = position.abs().max(target.abs()).max_element();
     let nearest = (NEAREST * reach).max(f64::from(f32::MIN_POSITIVE));
-    // Also false for what is not a number.
+    // Also false if a coordinate is NaN.
     if reach <= FARTHEST && position.distance(target) > nearest {
         Sensor { position: position.as_vec3(), target: target.as_vec3(), ..sensor.clone() }
     } else {
@@ -49,7 +49,7 @@ fn placed(sensor: &Sensor, position: DVec3, target: DVec3) -> Sensor {
     }
 }
 
-/// Moves the eye point around the target: a pointer that goes `angles` radians to the right and down turns the scene along.
+/// Moves the eye point around the target, so that the scene turns with a pointer that goes `angles` radians to the right and down.
 pub fn orbit(sensor: &Sensor, angles: DVec2) -> Sensor {
     let axes = Axes::of(sensor);
     let forward = axes.turned(sensor.up.as_dvec3().normalize(), DVec2::new(angles.x, -angles.y));
@@ -77,7 +77,7 @@ pub fn pan(sensor: &Sensor, by: DVec2) -> Sensor {
     placed(sensor, sensor.position.as_dvec3() + shift, sensor.target.as_dvec3() + shift)
 }
 
-/// Brings the eye point `factor` times as far from the target; parallel rays show that much more instead.
+/// Moves the eye point to `factor` times its distance from the target; an orthographic picture also becomes `factor` times as high.
 pub fn dolly(sensor: &Sensor, factor: f64) -> Sensor {
     let axes = Axes::of(sensor);
     let target = sensor.target.as_dvec3();

@@ -1,4 +1,4 @@
-//! A swapchain with the memory that its images are copied from.
+//! A swapchain, and the memory from which pictures are copied to its images.
 
 use super::device::Device;
 use super::surface::Surface;
@@ -9,11 +9,11 @@ pub struct Chain {
     pub(super) raw: vk::SwapchainKHR,
     pub(super) extent: vk::Extent2D,
     images: Vec<vk::Image>,
-    /// For each image: the copy to it has ended.
+    /// For each image, signalled when the copy to it has ended.
     done: Vec<vk::Semaphore>,
     buffer: vk::Buffer,
     memory: vk::DeviceMemory,
-    /// Where the memory is mapped, all of it, until it is freed.
+    /// Where all of the memory is mapped, until it is freed.
     mapped: *mut u8,
 }
 
@@ -26,11 +26,11 @@ impl Chain {
         extent: vk::Extent2D,
     ) -> ash::prelude::VkResult<Self> {
         let most = if can.max_image_count == 0 { u32::MAX } else { can.max_image_count };
-        // The surface's own choice where it has one that is not opaque: nobody looks through.
+        // The window is opaque wherever the surface allows it.
         let alpha = if can.supported_composite_alpha.contains(vk::CompositeAlphaFlagsKHR::OPAQUE) {
             vk::CompositeAlphaFlagsKHR::OPAQUE
         } else {
-            // The lowest of those that there are.
+            // The first that it allows instead.
             vk::CompositeAlphaFlagsKHR::from_raw(1 << can.supported_composite_alpha.as_raw().trailing_zeros())
         };
         let info = vk::SwapchainCreateInfoKHR::default()
@@ -44,7 +44,7 @@ impl Chain {
             .image_sharing_mode(vk::SharingMode::EXCLUSIVE)
             .pre_transform(can.current_transform)
             .composite_alpha(alpha)
-            // The one that every device has.
+            // The only mode that every device has.
             .present_mode(vk::PresentModeKHR::FIFO)
             .clipped(true);
         let mut chain = Chain {

@@ -1,4 +1,4 @@
-//! The Vulkan device that fills a window: any that can present does, whatever traces.
+//! The Vulkan device that fills a window: any that can present, whichever one traces.
 
 use super::surface::{ADVICE, Surface, with_advice};
 use ash::{khr, vk};
@@ -6,7 +6,7 @@ use luminaire::gpu::{Instance, PhysicalDevice};
 use luminaire::{Error, Result};
 use std::sync::Arc;
 
-/// Formats whose bytes are shown as they are, and whether blue comes first. A copy does not convert, so an sRGB format does as well.
+/// Formats whose bytes are shown as they are, and whether blue comes first. A copy does not convert, so sRGB formats are among them.
 const FORMATS: [(vk::Format, bool); 4] = [
     (vk::Format::B8G8R8A8_UNORM, true),
     (vk::Format::R8G8B8A8_UNORM, false),
@@ -19,14 +19,14 @@ pub struct Device {
     pub(super) raw: ash::Device,
     pub(super) swapchains: khr::swapchain::Device,
     pub(super) queue: vk::Queue,
-    /// Of the queue.
+    /// The queue's family.
     pub(super) family: u32,
-    /// Of the window's pictures.
+    /// The format of the swapchain's images.
     pub(super) format: vk::SurfaceFormatKHR,
     physical: vk::PhysicalDevice,
     memory: vk::PhysicalDeviceMemoryProperties,
     name: String,
-    /// It outlives the device.
+    /// Kept here so that it outlives the device.
     instance: Arc<Instance>,
 }
 

@@ -1,17 +1,17 @@
-//! The estimators that one key goes through.
+//! The estimators among which the key N changes.
 
 use luminaire::scene::{Estimator, Integrator, Scene};
 
 /// The scene's own estimator, and those that converge to the same picture.
 pub struct Estimators {
-    /// With their names.
+    /// Each with its name.
     found: Vec<(&'static str, Integrator)>,
     /// Which of them is at work.
     present: usize,
 }
 
 impl Estimators {
-    /// Those of a scene, of which the first, its own, is at work. The scene is as it was afterwards.
+    /// The estimators for a scene; its own is the first, and at work. The scene itself is unchanged afterwards.
     pub fn of(scene: &mut Scene) -> Self {
         let own = scene.integrator;
         let max_bounces = match own {
@@ -35,7 +35,7 @@ impl Estimators {
         Estimators { found, present: 0 }
     }
 
-    /// What the present one is called.
+    /// The name of the one at work.
     pub fn name(&self) -> &'static str {
         self.found[self.present].0
     }

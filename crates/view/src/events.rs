@@ -1,4 +1,4 @@
-//! What the window system reports, and what of the [`App`] it concerns.
+//! Hands each event of the window system to the part of the [`App`] that it concerns.
 
 use super::app::App;
 use super::input::{Input, wheel};

@@ -1,7 +1,7 @@
 //! The files that the window writes: numbered, so that none replaces another.
 
+use super::develop::develop;
 use super::news::News;
-use super::picture::develop;
 use super::sensor_table::to_toml;
 use super::shown::Shown;
 use super::wanted::{Saved, Wanted};
@@ -10,7 +10,7 @@ use luminaire::scene::Sensor;
 use luminaire::{Result, picture};
 use std::path::{Path, PathBuf};
 
-/// Writes a camera into a file whose name begins with `stem`; its text, and what came of it.
+/// Writes a camera to a file whose name begins with `stem`. The news are its text, and the file's name or why it was not written.
 pub fn save_camera(stem: &str, sensor: &Sensor) -> [News; 2] {
     let text = to_toml(sensor);
     let path = free_name(Path::new(""), stem, "camera", "toml");
@@ -18,7 +18,7 @@ pub fn save_camera(stem: &str, sensor: &Sensor) -> [News; 2] {
     [News::Done(text), written]
 }
 
-/// Writes a picture of a film into a file whose name begins with `stem`; what came of it.
+/// Writes a picture of a film to a file whose name begins with `stem`. The news are the file's name or why it was not written.
 pub fn save_picture(stem: &str, saved: Saved, film: &Film, wanted: &Wanted) -> News {
     let ending = match saved {
         Saved::Png => "png",
@@ -33,7 +33,7 @@ pub fn save_picture(stem: &str, saved: Saved, film: &Film, wanted: &Wanted) -> N
     written(result, &path)
 }
 
-/// What to say about a file.
+/// The news of a file: its name, or why it was not written.
 fn written(result: Result<()>, path: &Path) -> News {
     match result {
         Ok(()) => News::Done(format!("{}\n", path.display())),
@@ -44,7 +44,7 @@ fn written(result: Result<()>, path: &Path) -> News {
 /// The first of `STEM-KIND-1.ENDING`, `STEM-KIND-2.ENDING`, ... in `folder` that does not exist yet.
 fn free_name(folder: &Path, stem: &str, kind: &str, ending: &str) -> PathBuf {
     let names = (1u64..).map(|number| folder.join(format!("{stem}-{kind}-{number}.{ending}")));
-    // A link to nowhere is somebody's, too.
+    // A symbolic link that leads nowhere counts as a file, too, and is not replaced.
     let mut free = names.filter(|path| path.symlink_metadata().is_err());
     free.next().expect("numbers do not end before names do")
 }

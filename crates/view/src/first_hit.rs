@@ -13,13 +13,13 @@ pub enum FirstHit {
     Albedo,
     /// The unit shading normal in world space, on the side of the camera.
     Normal,
-    /// How far away it is, in the scene's unit; then 1 where a surface is met, and 0.
+    /// Its distance in the scene's unit, then 1 where a surface is met, then 0.
     Depth,
 }
 
-/// A tracer whose "radiance" is a property of the first surface, which comes from the [`Tracer::aovs`] of another one: so it fills a film as any does.
+/// A tracer whose "radiance" is a property of the first surface, taken from the [`Tracer::aovs`] of another tracer, so that it can fill a film.
 pub struct FirstHits<'a> {
-    /// The other one.
+    /// The other tracer.
     pub tracer: &'a mut dyn SceneTracer,
     /// The property.
     pub kind: FirstHit,

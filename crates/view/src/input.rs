@@ -10,17 +10,17 @@ use winit::dpi::PhysicalPosition;
 use winit::event::{MouseButton, MouseScrollDelta};
 use winit::keyboard::{KeyCode, ModifiersState};
 
-/// Between two steps of a flight.
+/// The time between two steps of a flight.
 pub const STEP: Duration = Duration::from_millis(16);
-/// Flight in a second, in radii of the scene; ...
+/// The speed of a flight, in radii of the scene a second.
 const FLIGHT: f64 = 0.5;
-/// ... with Shift so many times as much.
+/// With Shift a flight is so many times as fast.
 const FAST: f64 = 5.0;
-/// The most seconds that one step of a flight goes on for: a window that was not served does not jump.
+/// The most seconds that one step of a flight covers, so that the camera does not jump after the window has hung.
 const LONGEST: f64 = 0.1;
-/// What one step of the wheel does to the distance, ...
+/// One step of the wheel multiplies the distance by this.
 const WHEEL: f64 = 0.9;
-/// ... for which a touchpad gives so many pixels.
+/// The pixels of a touchpad that count as one step of the wheel.
 const WHEEL_PIXELS: f64 = 40.0;
 /// The keys to fly with, by their place on the keyboard, and where each goes: right, up, forward.
 const FLY: [(KeyCode, DVec3); 6] = [
@@ -35,7 +35,7 @@ const FLY: [(KeyCode, DVec3); 6] = [
 /// What is held down, and where the pointer is.
 #[derive(Debug, Default)]
 pub struct Input {
-    /// Those to fly with.
+    /// The keys to fly with that are held.
     keys: HashSet<KeyCode>,
     buttons: HashSet<MouseButton>,
     modifiers: ModifiersState,
@@ -73,7 +73,7 @@ impl Input {
         self.modifiers = modifiers;
     }
 
-    /// Lets go of everything: of what is let go in another window there is no word here.
+    /// Lets go of everything: when another window has the focus, releases are not reported here.
     pub fn let_go(&mut self) {
         self.keys.clear();
         self.buttons.clear();
@@ -86,10 +86,10 @@ impl Input {
         }
     }
 
-    /// The pointer is somewhere else: orbits, pans or looks around, as the buttons say. `height` is that of the picture in pixels.
+    /// The pointer has moved: orbits, pans or looks around, depending on the buttons held. `height` is the picture's, in pixels.
     pub fn drag(&mut self, to: PhysicalPosition<f64>, sensor: &Sensor, height: u32) -> Option<Sensor> {
         let from = self.pointer.replace(to)?;
-        // In heights of the picture.
+        // The move in heights of the picture.
         let by = DVec2::new(to.x - from.x, to.y - from.y) / f64::from(height);
         let held = |button| self.buttons.contains(&button);
         if held(MouseButton::Middle) || held(MouseButton::Left) && self.modifiers.shift_key() {
@@ -97,7 +97,7 @@ impl Input {
         } else if held(MouseButton::Left) {
             Some(camera::orbit(sensor, PI * by))
         } else if held(MouseButton::Right) {
-            // What the pointer is on stays under it.
+            // What was under the pointer stays under it.
             let fov = match sensor.projection {
                 Projection::Perspective { fov } => f64::from(fov).to_radians(),
                 Projection::Orthographic { .. } => 1.0,
@@ -113,7 +113,7 @@ impl Input {
         !self.keys.is_empty()
     }
 
-    /// Flies as far as the keys that are held have taken since the last step, in a scene of this radius.
+    /// The camera after a step with the keys that are held, as long as the time since the last step, in a scene of this radius; none if no key is.
     pub fn fly(&mut self, sensor: &Sensor, radius: f64) -> Option<Sensor> {
         if !self.flies() {
             self.flown = None;

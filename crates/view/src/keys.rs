@@ -1,4 +1,7 @@
 //! The keys that do something when they are pressed; those that are held to fly are an [`Input`](super::input::Input).
+//!
+//! A new key has four places: [`Action`] and [`action`] here, what it does in `App::act` (`app.rs`), its line in [`HELP`](super::overlay::HELP)
+//! (`overlay.rs`), and its row in `docs/view.md`.
 
 use super::first_hit::FirstHit;
 use super::shown::Shown;
@@ -11,7 +14,7 @@ const EXPOSURE: f32 = 1.0 / 3.0;
 /// What a key does.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Action {
-    /// Exposes so many stops more.
+    /// Adds so many stops to the exposure.
     Expose(f32),
     /// Shows something else of the film.
     Show(Shown),
@@ -34,7 +37,7 @@ pub fn action(key: Key<&str>, repeat: bool) -> Option<Action> {
     Some(match key {
         Key::Character("+" | "=") => Action::Expose(EXPOSURE),
         Key::Character("-" | "_") => Action::Expose(-EXPOSURE),
-        // The others do not repeat.
+        // A key that is held repeats only those above.
         _ if repeat => return None,
         Key::Named(NamedKey::Escape) => Action::Quit,
         Key::Named(NamedKey::Home) | Key::Character("r" | "R") => Action::Return,

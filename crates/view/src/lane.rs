@@ -1,4 +1,4 @@
-//! A tracer at work for the window: coarse while the camera moves, finer at rest, and then better and better.
+//! One film that is traced for the window: coarse while the camera moves, finer when it rests, then with more and more samples.
 
 use super::sight::Sight;
 use luminaire::Result;
@@ -7,18 +7,18 @@ use luminaire::render::{Budget, Pace, Progress, Rendered, Run, SceneTracer};
 use luminaire::sampling::PARTS;
 use luminaire::scene::FilmSettings;
 
-/// Seconds that one batch should take: the window answers no later than that.
+/// The seconds that one batch should take: for so long the worker does not look at what the window wants.
 const BATCH_SECONDS: f64 = 0.05;
-/// The coarsest pixels, in pixels of the window.
+/// The widest pixel of a film, in pixels of the window.
 const COARSEST: u32 = 8;
-/// A finer picture is gone to at once if its first pass takes no more seconds than this.
+/// The next finer film is as fine as it can be with a first pass of no more seconds than this, and at least twice as fine as the last.
 const SOON: f64 = 0.5;
 
 /// What a tracer has done so far, and how fast it is.
 pub struct Lane {
     /// None before the first sight.
     work: Option<Work>,
-    /// It goes on from sight to sight.
+    /// How many samples fit into a batch; kept from sight to sight.
     budget: Budget,
 }
 
@@ -50,7 +50,7 @@ pub enum Stage {
 }
 
 impl Lane {
-    /// Of a tracer that has done nothing yet.
+    /// Nothing is traced yet.
     pub fn new() -> Self {
         Lane { work: None, budget: Budget::new(Pace::WithinSeconds(BATCH_SECONDS)) }
     }
@@ -60,15 +60,16 @@ impl Lane {
         self.work = None;
     }
 
-    /// Lets a tracer that looked at something else meanwhile look at what the film shows.
+    /// Points a tracer, which another lane may have used meanwhile, at what this film shows.
     pub fn look(&self, tracer: &mut dyn SceneTracer) -> Result<()> {
         let Some(work) = &self.work else { return Ok(()) };
         let Film { width, height, .. } = *work.film();
         tracer.look(&work.sight.sensor, &FilmSettings { width, height, ..work.sight.film })
     }
 
-    /// Prepares for `sight`: at a resolution at which the first pass is quick, which is then finer and finer unless the camera is `moving`. A quick pass
-    /// that has begun is ended first, or a camera that never rests would never show anything. True if there is a new film.
+    /// Begins a new film if `sight` needs one; true if it did. A new sight begins at a resolution at which the first pass is quick; while the camera is
+    /// not `moving`, each film that has a sample everywhere is followed by a finer one. A first quick pass is always finished, for otherwise a
+    /// camera that never rests would never show anything.
     pub fn aim(&mut self, tracer: &mut dyn SceneTracer, sight: &Sight, moving: bool, spp: u32) -> Result<bool> {
         let (coarseness, before) = match &self.work {
             Some(work) if work.before.is_none() && work.film().least_samples() == 0 => return Ok(false),
@@ -80,7 +81,7 @@ impl Lane {
             }
             _ => (self.coarseness_within(BATCH_SECONDS, sight), None),
         };
-        // Before its successor is made: films are large.
+        // Films are large: the old one goes before the new one is made.
         self.work = None;
         let FilmSettings { width, height, .. } = sight.film;
         let (width, height) = (width.div_ceil(coarseness), height.div_ceil(coarseness));
@@ -92,7 +93,8 @@ impl Lane {
         Ok(true)
     }
 
-    /// The finest resolution at which the first pass takes no more than `seconds`: of one sample, or of the schedule's least number where others follow.
+    /// The coarseness of the finest film whose first pass takes no more than `seconds`. A pass is one sample a pixel in a coarse film, [`PARTS`] in the
+    /// window's own resolution.
     fn coarseness_within(&self, seconds: f64, sight: &Sight) -> u32 {
         let samples = self.budget.samples() as f64 * seconds / BATCH_SECONDS;
         let pixels = |coarseness: u32| {

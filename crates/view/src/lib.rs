@@ -13,20 +13,20 @@
 //! |---|---|
 //! | `window`, `events`, `app` | the window's life; what the window system reports; what that changes |
 //! | `keys`, `input`, `camera`, `ball` | what keys do, what is held down, and where it takes the camera |
-//! | `overlay`, `message` | words on the picture |
+//! | `overlay`, `message` | text over the picture |
 //! | `present`, `chain`, `device`, `surface` | pictures into the window |
 //! | `link`, `wanted`, `news`, `sight`, `shown` | what goes between window and worker |
 //! | `worker`, `lane`, `estimators`, `first_hit` | tracing |
-//! | `picture`, `figures`, `files`, `sensor_table` | what comes of it |
+//! | `develop`, `title`, `files`, `sensor_table` | the picture and the figures that are shown, the files that are saved |
 
 mod app;
 mod ball;
 mod camera;
 mod chain;
+mod develop;
 mod device;
 mod estimators;
 mod events;
-mod figures;
 mod files;
 mod first_hit;
 mod input;
@@ -37,12 +37,12 @@ mod message;
 mod news;
 mod options;
 mod overlay;
-mod picture;
 mod present;
 mod sensor_table;
 mod shown;
 mod sight;
 mod surface;
+mod title;
 mod wanted;
 mod window;
 mod worker;

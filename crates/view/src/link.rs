@@ -1,28 +1,28 @@
-//! From the window to the worker: what is wanted last, and every order.
+//! [`Link`]: the inbox through which the window reaches the worker. It keeps the latest [`Wanted`], and every [`Order`] until it is taken.
 
 use super::wanted::{Order, Wanted};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
-/// What the window and the worker share.
+/// The inbox that the window and the worker share, and a signal that something new is in it.
 #[derive(Debug)]
 pub struct Link {
     inbox: Mutex<Inbox>,
     changed: Condvar,
 }
 
-/// What lies there for the worker.
+/// What the worker finds.
 #[derive(Debug)]
 pub struct Inbox {
     /// What is wanted now.
     pub wanted: Wanted,
-    /// What is to be done, in this order.
+    /// The orders since the last look, oldest first.
     pub orders: Vec<Order>,
-    /// Whether anything of it is new.
+    /// Whether anything has changed since the last look.
     pub fresh: bool,
 }
 
 impl Link {
-    /// With something wanted, and no orders.
+    /// With a first thing wanted, and no orders.
     pub fn new(wanted: Wanted) -> Self {
         Link { inbox: Mutex::new(Inbox { wanted, orders: vec![], fresh: true }), changed: Condvar::new() }
     }
@@ -37,7 +37,7 @@ impl Link {
         }
     }
 
-    /// Gives the worker something to do.
+    /// Gives the worker an order.
     pub fn order(&self, order: Order) {
         let mut inbox = self.inbox();
         inbox.orders.push(order);
@@ -45,12 +45,12 @@ impl Link {
         self.changed.notify_one();
     }
 
-    /// Takes what lies there, at once.
+    /// What is in the inbox, without waiting.
     pub fn take(&self) -> Inbox {
         self.inbox().take()
     }
 
-    /// Takes what lies there, once there is something new.
+    /// What is in the inbox, once there is something new.
     pub fn wait(&self) -> Inbox {
         let mut inbox = self.inbox();
         while !inbox.fresh {
@@ -65,7 +65,7 @@ impl Link {
 }
 
 impl Inbox {
-    /// What lies here; afterwards nothing of it is new.
+    /// Takes the orders and a copy of what is wanted; afterwards nothing is new.
     fn take(&mut self) -> Inbox {
         Inbox {
             wanted: self.wanted.clone(),

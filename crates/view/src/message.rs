@@ -1,4 +1,4 @@
-//! What the window says for a moment.
+//! [`Message`]: a line of text over the picture that goes after three seconds.
 
 use std::time::{Duration, Instant};
 
@@ -10,12 +10,12 @@ const STAY: Duration = Duration::from_secs(3);
 pub struct Message {
     /// The line.
     pub text: String,
-    /// When it goes.
+    /// When it is removed.
     pub until: Instant,
 }
 
 impl Message {
-    /// The first line of a text, from now on.
+    /// Shows the first line of a text from now on.
     pub fn new(text: &str) -> Self {
         Message { text: text.lines().next().unwrap_or_default().to_owned(), until: Instant::now() + STAY }
     }

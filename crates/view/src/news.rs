@@ -1,26 +1,26 @@
-//! What the worker has for the window.
+//! [`News`]: what the worker sends to the window: pictures, messages, results, and its own end.
 
-use super::picture::Developed;
+use super::develop::Developed;
 use luminaire::Result;
 
 /// What the worker sends to the window.
 #[derive(Debug)]
 pub enum News {
-    /// Something to see.
+    /// A picture to show.
     Frame(Frame),
-    /// A sentence about what was done, or could not be.
+    /// A message: what was done, or could not be done.
     Said(String),
-    /// A result: a file, or its content, for standard output.
+    /// A result for standard output: the name of a file, or its content.
     Done(String),
     /// The worker has ended.
     Ended(Result<()>),
 }
 
-/// Something to see, and about it.
+/// A picture to show, and what the title says of it.
 #[derive(Debug)]
 pub struct Frame {
     /// The picture.
     pub developed: Developed,
-    /// For the title.
+    /// The figures for the title.
     pub figures: String,
 }

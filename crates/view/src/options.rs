@@ -1,4 +1,4 @@
-//! What a window is opened for.
+//! [`Options`]: the scene that a window shows, and what traces it.
 
 use luminaire::backend::Request;
 use luminaire::scene::Scene;

@@ -1,4 +1,4 @@
-//! Words on the picture: the help, and what was just done.
+//! Text over the picture: the help ([`HELP`]), and a line at the upper edge.
 
 use embedded_graphics::mono_font::iso_8859_1::{FONT_5X8, FONT_6X10, FONT_9X15};
 use embedded_graphics::mono_font::{MonoFont, MonoTextStyle};
@@ -31,20 +31,20 @@ C                  write the camera as a scene file's [sensor]
 H or ?             this help
 Esc                quit";
 
-/// The largest that fits is taken.
+/// From large to small: the first in which a text fits is taken, or else the last.
 const FONTS: [&MonoFont; 3] = [&FONT_9X15, &FONT_6X10, &FONT_5X8];
-/// Around the text, in dots.
+/// The space around a text, in dots.
 const MARGIN: i32 = 8;
-/// Between two lines, in dots.
+/// The space between two lines, in dots.
 const LEADING: i32 = 1;
 
-/// A picture of four bytes a pixel, to be written on in dots of `dot` by `dot` pixels.
+/// A picture of four bytes a pixel to write on. What is written has dots of `dot` by `dot` pixels, so that it can be read on a dense screen.
 pub struct Canvas<'a> {
     /// Rows from the top.
     pub bytes: &'a mut [u8],
     /// Width and height in pixels.
     pub size: (u32, u32),
-    /// Pixels of a dot, across.
+    /// The side of a dot in pixels.
     pub dot: u32,
 }
 

@@ -1,7 +1,7 @@
-//! Pictures from host memory into a window.
+//! Shows pictures from host memory in a window.
 //!
-//! A picture is written to a buffer and copied to an image of the swapchain; one is on its way at a time. The swapchain is made again when the window's size
-//! changes, the surface when it is lost.
+//! A picture is written to a buffer and copied from there to an image of the swapchain; no second one is written before the copy has ended. The
+//! swapchain is made again when the window's size changes, the surface when it is lost.
 
 use super::chain::Chain;
 use super::device::Device;
@@ -11,9 +11,9 @@ use luminaire::Result;
 use std::sync::Arc;
 use winit::window::Window;
 
-/// Nanoseconds to wait for an image before the window is served again, ...
+/// The most nanoseconds to wait for an image; then the window's events come first, and the picture is tried again.
 const PATIENCE: u64 = 100_000_000;
-/// ... and for the last copy before the device is taken to hang.
+/// The most nanoseconds to wait for the last copy; then the device counts as hanging.
 const HANGS: u64 = 10_000_000_000;
 
 /// Writes a picture of a size into rows of four bytes a pixel, with blue first if the last argument says so.
@@ -29,9 +29,9 @@ pub struct Presenter {
     copied: vk::Fence,
     /// Signalled when the image that was acquired may be written.
     acquired: vk::Semaphore,
-    // After all that is made of it.
+    // Declared after everything that was made from it, and so dropped after it.
     device: Device,
-    // After the device, which may only then let go of it.
+    // Declared after the device, which must be destroyed first.
     surface: Surface,
 }
 

@@ -1,10 +1,10 @@
-//! A camera in words: the `[sensor]` table of a scene file.
+//! Writes a camera as the `[sensor]` table of a scene file.
 
 use luminaire::scene::{Projection, Sensor};
 
 /// The table of a sensor; read back, it is the same to the last bit.
 pub fn to_toml(sensor: &Sensor) -> String {
-    // The shortest digits that stand for this number alone.
+    // `{:?}` writes the fewest digits that are read back as the same number.
     let vector = |v: glam::Vec3| format!("[{:?}, {:?}, {:?}]", v.x, v.y, v.z);
     let (kind, extent) = match sensor.projection {
         Projection::Perspective { fov } => ("perspective", format!("fov = {fov:?}")),

@@ -1,4 +1,4 @@
-//! The choice of what the window shows.
+//! [`Shown`]: what of a film the window shows: the picture, its error, or a property of the first surface.
 
 use super::first_hit::FirstHit;
 
@@ -14,7 +14,7 @@ pub enum Shown {
 }
 
 impl Shown {
-    /// What it is called.
+    /// Its name, for messages and the title.
     pub fn name(self) -> &'static str {
         match self {
             Shown::Picture => "picture",

@@ -1,8 +1,8 @@
-//! What is looked at.
+//! [`Sight`]: a camera and the film that it is traced to.
 
 use luminaire::scene::{FilmSettings, Sensor};
 
-/// What is traced: a camera and a film.
+/// A camera and a film: when either changes, tracing starts anew.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sight {
     /// The camera.

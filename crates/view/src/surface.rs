@@ -1,4 +1,4 @@
-//! What of a window a Vulkan device draws into.
+//! The Vulkan surface of a window: what a device presents pictures to.
 
 use ash::{khr, vk};
 use luminaire::gpu::Instance;
@@ -16,7 +16,7 @@ pub struct Surface {
     pub(super) raw: vk::SurfaceKHR,
     pub(super) calls: khr::surface::Instance,
     pub(super) instance: Arc<Instance>,
-    // After the surface, which refers to it.
+    // Declared after the surface, which refers to it.
     pub(super) window: Arc<Window>,
 }
 
@@ -73,7 +73,7 @@ impl Drop for Surface {
     }
 }
 
-/// A failure of Vulkan that would not have been one without a window.
+/// An error of Vulkan with the advice that `luminaire render` needs no window.
 pub fn with_advice(error: Error) -> Error {
     match error {
         Error::NoDevice(reason) => Error::NoDevice(format!("a window needs Vulkan: {reason}; or: {ADVICE}")),

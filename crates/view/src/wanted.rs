@@ -1,24 +1,24 @@
-//! What the window asks of the worker.
+//! What the window asks of the worker: [`Wanted`], a state to keep to until it changes, and [`Order`], something to do once.
 
 use super::shown::Shown;
 use super::sight::Sight;
 
-/// What the window wants.
+/// The state that the worker keeps to.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Wanted {
     /// Camera and film.
     pub sight: Sight,
-    /// Whether the camera is on its way, so that quick is better than fine.
+    /// Whether the camera is moving: then a quick picture is better than a fine one.
     pub moving: bool,
-    /// What is shown.
+    /// What of the film is shown.
     pub shown: Shown,
-    /// In stops.
+    /// The exposure in stops.
     pub exposure: f32,
-    /// Whether to leave the film as it is.
+    /// Whether to add no more samples.
     pub paused: bool,
 }
 
-/// What is to be done once.
+/// Something to do once.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Order {
     /// Trace with the next backend that works here.
@@ -27,9 +27,9 @@ pub enum Order {
     NextEstimator,
     /// Save a picture.
     Save(Saved),
-    /// Write the camera down.
+    /// Write the camera to a file, as a scene file's `[sensor]` table.
     SaveCamera,
-    /// End.
+    /// End the thread.
     Quit,
 }
 

@@ -1,4 +1,4 @@
-//! A window, from its opening to its end.
+//! Opens a window and runs its event loop until it is closed.
 
 use super::app::App;
 use super::news::News;
@@ -13,7 +13,7 @@ use winit::event_loop::EventLoop;
 pub fn run(options: Options) -> Result<()> {
     let event_loop = EventLoop::<News>::with_user_event().build().map_err(|e| {
         let text = e.to_string();
-        // Without the place in winit's source that comes first.
+        // winit's text begins with a place in its own source, which is cut off.
         let reason = text.rsplit_once(": ").filter(|_| text.starts_with("os error at ")).map_or(&text[..], |(_, r)| r);
         Error::NoDevice(format!(
             "no window can be opened here ({}): run it where there is a display (DISPLAY or WAYLAND_DISPLAY is set), \

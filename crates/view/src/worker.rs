@@ -1,15 +1,15 @@
-//! The thread that traces: it follows what the window wants, and sends what there is to see.
+//! The thread that traces: it follows what the window wants, and sends pictures and messages to it.
 
+use super::develop::develop;
 use super::estimators::Estimators;
-use super::figures::figures;
 use super::files::{save_camera, save_picture};
 use super::first_hit::{FirstHit, FirstHits};
 use super::lane::{Lane, Stage};
 use super::link::{Inbox, Link};
 use super::news::{Frame, News};
 use super::options::Options;
-use super::picture::develop;
 use super::shown::Shown;
+use super::title::figures;
 use super::wanted::{Order, Saved, Wanted};
 use luminaire::backend::{self, Backend, Request};
 use luminaire::render::SceneTracer;
@@ -20,11 +20,11 @@ use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// A picture is shown again no sooner than after this, ...
+/// The least time between two pictures of a sight that is still getting better.
 const FRAME: Duration = Duration::from_millis(100);
-/// ... and so many times as long is spent on tracing as on developing.
+/// The time between two pictures is at least so many times that of developing one, so that most of it goes into tracing.
 const DEVELOP_SHARE: u32 = 5;
-/// Samples of the first surface that are enough.
+/// The samples a pixel after which a property of the first surfaces is finished.
 const FIRST_HIT_SAMPLES: u32 = 64;
 
 /// The tracer of the picture.
@@ -63,19 +63,20 @@ struct Worker {
     stem: String,
     request: Request,
     estimators: Estimators,
-    /// None before it is opened.
+    /// The tracer of the picture; none before it is opened.
     picture: Option<Tracing>,
-    /// What the same tracer has done for a property of the first surfaces, and which.
+    /// The film of a property of the first surfaces, by the same tracer.
     surfaces: Lane,
+    /// Which property that is.
     kind: Option<FirstHit>,
     /// What the tracer looked for last; none before the first batch.
     subject: Option<Subject>,
     link: Arc<Link>,
-    /// To the window.
+    /// Sends to the window.
     send: Box<dyn Fn(News)>,
 }
 
-/// Starts to trace what a window wants, on a thread of its own, until it is ordered to quit or fails; the last news says which.
+/// Starts a thread that traces what a window wants until it is ordered to quit or fails; its last news is which of the two.
 ///
 /// # Errors
 /// If no thread can be started.
@@ -86,7 +87,7 @@ pub fn start(
 ) -> Result<JoinHandle<()>> {
     let work = move || {
         let news = Box::new(send.clone());
-        // A window whose worker is gone would look alive. What the panic said is on stderr.
+        // After a panic, whose message is on stderr, the window has to close too: without a worker it would only look alive.
         let result = catch_unwind(AssertUnwindSafe(|| Worker::new(options, link, news).run()))
             .unwrap_or_else(|_| Err(Error::NoDevice("the renderer stopped: this is a bug of luminaire".into())));
         send(News::Ended(result));
@@ -152,7 +153,7 @@ impl Worker {
                 lane.look(tracer)?;
             }
             let aimed = lane.aim(tracer, &wanted.sight, wanted.moving, spp)?;
-            // A pause does not keep a picture from being begun.
+            // While paused, too, a new sight is traced until every pixel has a sample.
             let traced = !(wanted.paused && lane.film().is_some()) && lane.trace(tracer)?;
             busy = aimed || traced;
             unseen |= busy || fresh;
@@ -171,7 +172,7 @@ impl Worker {
         }
     }
 
-    /// Sees to the tracer that is wanted.
+    /// Opens the tracer if there is none, and drops the film of the first surfaces if another property is wanted.
     fn open(&mut self, wanted: &Wanted) -> Result<()> {
         if self.picture.is_none() {
             self.say("preparing".into());
@@ -186,7 +187,7 @@ impl Worker {
         Ok(())
     }
 
-    /// Opens a tracer of the picture.
+    /// Opens a tracer for the picture, and has the window show which it is.
     fn tracing(&mut self, wanted: &Wanted, request: &Request) -> Result<Tracing> {
         (self.scene.sensor, self.scene.film) = (wanted.sight.sensor.clone(), wanted.sight.film);
         let opened = backend::open(&self.scene, request)?;
@@ -223,7 +224,7 @@ impl Worker {
         Ok(())
     }
 
-    /// The lane that is shown.
+    /// The lane whose film is shown.
     fn lane(&mut self, shown: Shown) -> Option<&mut Lane> {
         match Subject::of(shown) {
             Subject::Surfaces => Some(&mut self.surfaces),
@@ -231,7 +232,7 @@ impl Worker {
         }
     }
 
-    /// Has the window say something.
+    /// Has the window show a message.
     fn say(&self, text: String) {
         (self.send)(News::Said(text));
     }
@@ -252,7 +253,7 @@ impl Worker {
         (self.send)(News::Frame(Frame { developed, figures }));
     }
 
-    /// Writes the pictures that are due, once there is one in full resolution.
+    /// Writes the pictures that were ordered, as soon as the film has the window's resolution and a sample in every pixel.
     fn save(&mut self, wanted: &Wanted, saves: &mut Vec<Saved>) {
         let stem = self.stem.clone();
         let Some(film) = self.lane(wanted.shown).and_then(|lane| lane.film()).filter(|_| !saves.is_empty()) else {

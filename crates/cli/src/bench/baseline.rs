@@ -1,11 +1,11 @@
 //! What has changed since the baseline.
 
-use crate::printing::print;
-use crate::table::table;
+use crate::shared::printing::print;
+use crate::shared::table::table;
 use luminaire::{Error, Result};
 use luminaire_measure::bench::{Baseline, Report, Verdict};
 
-/// Prints what changed; gives how many figures got worse.
+/// Prints what changed; returns how many figures got worse.
 pub fn compare(baseline: &Baseline, report: &Report) -> Result<usize> {
     let changes = baseline.changes(report);
     let rows = Baseline::rows(&changes);

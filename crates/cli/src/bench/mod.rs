@@ -5,11 +5,11 @@ mod options;
 
 pub use self::options::Options;
 
-use crate::backend_name::BackendName;
-use crate::figures::duration;
-use crate::interrupts;
-use crate::links::seen_from;
-use crate::printing::{self, Notes, note, print, warn};
+use crate::shared::backend_name::BackendName;
+use crate::shared::interrupts;
+use crate::shared::printing::{self, Notes, note, print, warn};
+use crate::shared::relative_path::seen_from;
+use crate::shared::units::duration;
 use luminaire::files::{check_writable, save_text};
 use luminaire::picture;
 use luminaire::{Error, Result};
@@ -28,7 +28,7 @@ const FOLDER: &str = "bench";
 /// What is measured where no scene is given: diffuse surfaces under one lamp; instances; small lamps; textures and holes.
 const SCENES: [&str; 4] = ["cornell", "instances", "lamps", "textures"];
 
-/// So many of them are enough to see that it works.
+/// With `--quick`, only so many of them.
 const QUICK_SCENES: usize = 2;
 
 /// Measures, writes, and compares.
@@ -98,7 +98,7 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     Ok(if failed + worse > 0 { ExitCode::FAILURE } else { ExitCode::SUCCESS })
 }
 
-/// Loads what is to be measured. The backends come when they are known.
+/// What the options ask to measure, with the scenes loaded. The backends are left empty: they are known only when the devices are open.
 fn settings(options: &Options, sections: &[Definition]) -> Result<Settings> {
     let effort = options.effort();
     let reference = options.reference.as_deref().map(picture::read).transpose()?;
@@ -133,7 +133,7 @@ fn settings(options: &Options, sections: &[Definition]) -> Result<Settings> {
     })
 }
 
-/// The repository's scenes.
+/// The first `count` of [`SCENES`] in the repository's folder. A usage error if one is missing.
 fn standard_scenes(count: usize) -> Result<Vec<PathBuf>> {
     let path = |name: &&str| PathBuf::from(format!("scenes/{name}/{name}.toml"));
     let paths: Vec<_> = SCENES[..count].iter().map(path).collect();
@@ -147,7 +147,7 @@ fn standard_scenes(count: usize) -> Result<Vec<PathBuf>> {
     }
 }
 
-/// Those that are asked for, all of which have to be there, or those that are there.
+/// The backends that the options name, or all that can run here. Fails if one that is named cannot.
 fn backends(options: &Options, bench: &Workbench) -> Result<Vec<luminaire::backend::Backend>> {
     let there = bench.backends();
     let asked: Vec<_> = options.backend.iter().filter_map(|name| name.backend()).collect();

@@ -1,6 +1,6 @@
 //! What to measure, and what to compare it with.
 
-use crate::backend_name::BackendName;
+use crate::shared::backend_name::BackendName;
 use luminaire_measure::bench::{Effort, SECTIONS, check_estimator};
 use std::path::PathBuf;
 
@@ -84,7 +84,7 @@ impl Options {
         }
     }
 
-    /// The command that makes the page again.
+    /// The command line that makes the page again; the page shows it.
     pub fn command(&self) -> String {
         let mut words = vec!["luminaire bench".to_owned()];
         let path = |option: &str, path: &PathBuf| format!("--{option} {}", path.display());

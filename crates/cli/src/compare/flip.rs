@@ -4,12 +4,12 @@ use luminaire::picture::Picture;
 use luminaire_measure::{flip, metrics};
 use serde::Serialize;
 
-/// FLIP, and of what.
+/// FLIP of two pictures, and the exposures it was taken at.
 #[derive(Serialize)]
 pub struct Flip {
     /// The mean over all pixels, from 0 to 1.
     pub mean: f64,
-    /// That of the worst pixel.
+    /// The value of the worst pixel.
     pub largest: f32,
     /// From which exposure to which.
     pub exposures: Exposures,
@@ -18,10 +18,10 @@ pub struct Flip {
 }
 
 impl Flip {
-    /// Of a picture and its reference; at one exposure in stops, if it is given.
+    /// FLIP of a picture and its reference; at one exposure in stops, if it is given.
     pub fn new(image: &Picture, reference: &Picture, exposure: Option<f32>) -> Self {
         let (width, height) = (image.width as usize, image.height as usize);
-        // What is not finite in one of them is black in both.
+        // A pixel that is not finite in one of them is black in both.
         let pixels = |picture: &Picture, scale: f32| -> Vec<[f32; 3]> {
             let pairs = image.rgb.iter().zip(&reference.rgb).zip(&picture.rgb);
             let known = |((a, b), pixel): ((&[f32; 3], &[f32; 3]), &[f32; 3])| {
@@ -43,7 +43,7 @@ impl Flip {
     }
 }
 
-/// A range of exposures in stops; in JSON, both in a list.
+/// A range of exposures in stops; in JSON, a list of two numbers.
 #[derive(Debug, Clone, Copy, Serialize)]
 #[serde(into = "[f32; 2]")]
 pub struct Exposures {

@@ -5,8 +5,8 @@ mod tables;
 
 use self::flip::Flip;
 use self::tables::{Source, describe, number};
-use crate::printing::{self, print, warn};
-use crate::values::{limit, stops};
+use crate::shared::printing::{self, print, warn};
+use crate::shared::values::{limit, stops};
 use luminaire::files;
 use luminaire::picture::{self, Picture};
 use luminaire::{Error, Result};
@@ -149,7 +149,7 @@ fn failures(options: &Options, comparison: &Comparison, flip: Option<&Flip>) -> 
     failures
 }
 
-/// Warns of what may mislead.
+/// Warns where the measures may mislead.
 fn warn_of_pitfalls(options: &Options, image: &Picture, reference: &Picture, comparison: &Comparison) {
     if comparison.reference_non_finite.count > 0 {
         let odd = non_finite(comparison.reference_non_finite);

@@ -1,7 +1,7 @@
 //! The tables of `luminaire compare`.
 
 use super::flip::{Exposures, Flip};
-use crate::table::table;
+use crate::shared::table::table;
 use luminaire::picture::Picture;
 use luminaire_measure::metrics::{Comparison, ErrorSource};
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! Integrators in words.
+//! The line that describes an integrator.
 
 use luminaire::scene::{AreaSampling, Directions, Estimator, Extinction, Integrator, LightSampling};
 
@@ -13,7 +13,7 @@ pub fn describe(integrator: &Integrator) -> String {
         }
         Integrator::Path(estimator) => estimator,
     };
-    // A limit of bounces is no other estimator.
+    // A preset with a limit of bounces is still that preset.
     let unlimited = Estimator { max_bounces: None, ..*estimator };
     let preset = Estimator::preset_names().find(|name| Estimator::preset(name) == Some(unlimited));
     let preset = preset.map_or(String::new(), |name| format!(", estimator `{name}`"));

@@ -4,8 +4,8 @@ mod integrator;
 mod tables;
 
 use self::tables::{luminaires, materials, meshes, objects, rgb, textures};
-use crate::printing::print;
-use crate::table::table;
+use crate::shared::printing::print;
+use crate::shared::table::table;
 use luminaire::Result;
 use luminaire::gpu::specialization::KernelModel;
 use luminaire::scene::{self, Environment, Mesh, Projection, Scene};
@@ -39,7 +39,7 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Everything that was loaded.
+/// The whole report on a scene.
 fn describe(scene: &Scene) -> String {
     let (low, high) = scene.world_bounds();
     let stored: usize = scene.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
@@ -121,7 +121,7 @@ fn sensor(scene: &Scene) -> String {
     format!("at {}, looking at {}, up {}, {projection}{lens}", rgb(s.position), rgb(s.target), rgb(s.up))
 }
 
-/// As scene files write it.
+/// A filter's name in scene files.
 fn filter(filter: scene::Filter) -> &'static str {
     match filter {
         scene::Filter::Box => "box",

@@ -19,7 +19,7 @@ pub(super) fn meshes(scene: &Scene) -> Vec<Vec<String>> {
     std::iter::once(head).chain(scene.meshes.iter().map(|m| mesh(m))).collect()
 }
 
-/// More rows than anyone reads are left out.
+/// Objects after so many are only counted.
 const MOST_OBJECTS: usize = 20;
 
 /// Objects and how they are placed.
@@ -46,7 +46,7 @@ pub(super) fn objects(scene: &Scene) -> Vec<Vec<String>> {
 }
 
 /// Materials and how many triangles show them. The first one of a loaded scene is the built-in `default`, which nobody asked for:
-/// it is left out where nothing shows it, and told apart from one that a file calls so.
+/// it is left out where nothing shows it, and marked as built in where a file has one of that name, too.
 pub(super) fn materials(scene: &Scene) -> Vec<Vec<String>> {
     let mut used = vec![0u64; scene.materials.len()];
     for object in &scene.objects {

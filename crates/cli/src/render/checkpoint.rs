@@ -1,8 +1,8 @@
-//! `--checkpoint` and `--resume`: renders that lose nothing.
+//! `--checkpoint` and `--resume`: saving a render while it runs, and going on from what was saved.
 
 use super::options::Options;
 use super::outputs::is_exr;
-use crate::printing::Notes;
+use crate::shared::printing::Notes;
 use luminaire::part::{self, Provenance};
 use luminaire::render::Rendered;
 use luminaire::scene::Scene;
@@ -20,7 +20,7 @@ pub struct Checkpoint<'a> {
 }
 
 impl<'a> Checkpoint<'a> {
-    /// What `--checkpoint` asks for.
+    /// The checkpoint of a render that begins now; none without `--checkpoint`.
     pub fn of(options: &'a Options, scene: &Scene, notes: Notes) -> Option<Self> {
         let every = Duration::from_secs_f64(options.checkpoint_every);
         Some(Checkpoint {
@@ -50,7 +50,7 @@ impl<'a> Checkpoint<'a> {
     }
 }
 
-/// The pictures that are written besides.
+/// The files of pictures, which are not the checkpoint.
 fn pictures(options: &Options) -> Vec<&Path> {
     let paths = options.output.iter().map(PathBuf::as_path);
     #[cfg(feature = "denoise")]
@@ -108,7 +108,7 @@ pub fn begin(options: &Options, scene: &Scene, notes: Notes) -> Result<Rendered>
     Ok(rendered)
 }
 
-/// Whether there is a file. Not to know is an error: a file that cannot be seen for a moment must not be overwritten.
+/// Whether there is a file. It is an error if that cannot be found out: a checkpoint that is unreachable for a moment must not be overwritten.
 fn exists(path: &Path) -> Result<bool> {
     path.try_exists().map_err(|e| Error::read(path, e))
 }

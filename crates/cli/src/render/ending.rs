@@ -1,21 +1,22 @@
-//! The end of a render: its files, its messages and its exit code.
+//! The steps after tracing, in their order: warn, have the files written, print the summary, choose the exit code.
 
 use super::outcome::Outcome;
 use super::{outputs, summary};
-use crate::exit_codes::{DEVICE_FAILED, INTERRUPTED};
-use crate::interrupts;
-use crate::printing::{self, Notes, print};
+use crate::shared::exit_codes::{DEVICE_FAILED, INTERRUPTED};
+use crate::shared::interrupts;
+use crate::shared::printing::{self, Notes, print};
 use luminaire::Result;
 use luminaire::render::{End, Rendered};
 use luminaire::scene::Scene;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Writes what there is, and prints how it ended. Fails if a file, the checkpoint included, cannot be written.
+/// Writes the files, prints the summary and how the render ended, and returns the exit code. Fails if a file cannot be written, or the checkpoint
+/// could not be.
 pub fn finish(mut outcome: Outcome, pictures: &[PathBuf], notes: Notes) -> Result<ExitCode> {
     let rendered = &outcome.rendered;
     let unfinished_part = outcome.options.samples.is_some() && !matches!(rendered.end, End::Samples);
-    // Whoever finds a part may take it to be whole, so that one that is not stays in the checkpoint, if there is one.
+    // An unfinished part is not written where the checkpoint holds it: somebody might take the file for the whole part.
     let nothing = rendered.progress.samples == 0 || unfinished_part && outcome.saved.is_some();
     let written = if nothing { &[] } else { pictures };
     warn_of_losses(rendered, outcome.scene, notes);

@@ -1,18 +1,18 @@
-//! A tracer that fails on purpose.
+//! A tracer that fails on purpose, for tests of what happens then.
 
 use luminaire::film::{AovSum, Batch, Tile};
 use luminaire::render::{Traced, Tracer};
 use luminaire::{Error, Result};
 use std::ops::Range;
 
-/// A tracer whose device is lost after some batches: with LUMINAIRE_LOSE_DEVICE_AFTER, so that scripts can try what happens then.
+/// A tracer that reports a lost device after as many batches as the environment variable LUMINAIRE_LOSE_DEVICE_AFTER says.
 pub struct FailingTracer<'a> {
     tracer: &'a mut dyn Tracer,
     batches_left: Option<u64>,
 }
 
 impl<'a> FailingTracer<'a> {
-    /// Fails as the environment asks; never, if it asks for nothing. A usage error if it asks in other than a number.
+    /// Without the variable it never fails. A usage error if the variable is not a number.
     pub fn new(tracer: &'a mut dyn Tracer) -> Result<Self> {
         const NAME: &str = "LUMINAIRE_LOSE_DEVICE_AFTER";
         let batches_left = match std::env::var(NAME) {

@@ -21,11 +21,11 @@ use self::options::LARGEST_SIDE;
 use self::outcome::Outcome;
 use self::progress::Reporter;
 use self::stats::Seconds;
-use crate::backend_name;
-use crate::film_size::FilmSize;
-use crate::interrupts;
-use crate::printing::Notes;
-use crate::values::Pixel;
+use crate::shared::backend_name;
+use crate::shared::film_size::FilmSize;
+use crate::shared::interrupts;
+use crate::shared::printing::Notes;
+use crate::shared::values::Pixel;
 use luminaire::backend::{self, Renderer, Request};
 use luminaire::film::Film;
 use luminaire::render::{End, Limits, Rendered, aovs, resume};
@@ -89,7 +89,7 @@ fn trace(
     pictures: &[PathBuf],
     notes: Notes,
 ) -> Result<ExitCode> {
-    // Before a device is opened, which takes longer than to find a checkpoint that does not fit.
+    // Before a device is opened: that takes longer, and a checkpoint that does not fit ends the run anyway.
     let begun = if options.pixel.is_some() {
         Rendered::nothing((scene.film.width, scene.film.height), 0)?
     } else {
@@ -122,10 +122,10 @@ fn trace(
     {
         notes.note(&format!("the checkpoint already held more samples than were asked for: {least} a pixel"));
     }
-    // First of all: whatever fails after it, nothing is lost.
+    // The checkpoint comes first: whatever fails afterwards, the samples are saved.
     let checkpoint = checkpoint.filter(|_| rendered.progress.samples > 0);
     let saved = checkpoint.map(|checkpoint| interrupts::hold_off(|| checkpoint.save(&rendered)));
-    // A device that has failed would only fail again, and who interrupts does not want to wait.
+    // Not after a failure, for the device would fail again, nor after an interrupt, which should end the run soon.
     let mut layers = None;
     if options.wants_aovs() && !matches!(rendered.end, End::Failed(_) | End::Stopped) {
         let size = (rendered.film.width, rendered.film.height);
@@ -140,14 +140,14 @@ fn trace(
     ending::finish(outcome, pictures, notes)
 }
 
-/// Prints what renders, where, and why.
+/// Notes which backend renders on which device, and why.
 fn note_renderer(renderer: &Renderer, notes: Notes) {
     let notice = if renderer.notice { "notice: " } else { "" };
     let driver = if renderer.driver.is_empty() { String::new() } else { format!(", {}", renderer.driver) };
     notes.note(&format!("{notice}{} on {}{driver}: {}", renderer.backend, renderer.device, renderer.why));
 }
 
-/// When the render ends: the scene's samples a pixel count only where nothing else limits it.
+/// What ends the render: options, or the scene's samples a pixel where no option does.
 fn limits(options: &Options, scene: &Scene) -> Limits {
     let other_limit = options.time.is_some() || options.noise.is_some();
     let scene_spp = (!other_limit).then_some(scene.settings.spp);

@@ -1,9 +1,9 @@
 //! What to render, and how.
 
-use crate::backend_name::BackendName;
-use crate::estimator::EstimatorOptions;
-use crate::exit_codes::EXIT_CODES;
-use crate::values::{Pixel, noise, pixel, range, seconds, stops};
+use crate::shared::backend_name::BackendName;
+use crate::shared::estimator::EstimatorOptions;
+use crate::shared::exit_codes::EXIT_CODES;
+use crate::shared::values::{Pixel, noise, pixel, range, seconds, stops};
 use std::ops::Range;
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! What a render leaves.
+//! [`Outcome`]: everything that is known when tracing has ended, in memory.
 
 use super::options::Options;
 use super::stats::Seconds;
@@ -8,7 +8,7 @@ use luminaire::film::Aovs;
 use luminaire::render::Rendered;
 use luminaire::scene::Scene;
 
-/// What a render leaves, before any picture is written.
+/// What is known when tracing has ended and the checkpoint is saved, before any picture is written.
 pub struct Outcome<'a> {
     /// What was asked for.
     pub options: &'a Options,

@@ -1,4 +1,4 @@
-//! The files that a render leaves, except for its checkpoint.
+//! The files of a render except for its checkpoint: their names are checked before it, and they are written after it.
 
 use super::options::Options;
 use super::outcome::Outcome;
@@ -10,12 +10,12 @@ use luminaire_measure::heat_map;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Whether the name of a file says that it holds floats and layers.
+/// Whether a file is EXR by its name.
 pub fn is_exr(path: &Path) -> bool {
     matches!(picture::Format::of(path), Ok(picture::Format::Exr))
 }
 
-/// Refuses a part and layers where no file can hold them.
+/// Refuses `--samples` and `--aov` where no output is an EXR file, the only format that holds a part or layers.
 pub fn check_layers(options: &Options) -> Result<()> {
     if options.samples.is_some() && !options.output.iter().any(|path| is_exr(path)) {
         return Err(Error::Usage(
@@ -78,7 +78,7 @@ pub fn check_others(options: &Options, pictures: &[PathBuf]) -> Result<()> {
     Ok(())
 }
 
-/// Writes the pictures and the figures.
+/// Writes the pictures, and then the figures of `--stats`.
 pub fn write(outcome: &mut Outcome, pictures: &[PathBuf]) -> Result<()> {
     let start = Instant::now();
     write_pictures(outcome, pictures)?;
@@ -91,7 +91,7 @@ pub fn write(outcome: &mut Outcome, pictures: &[PathBuf]) -> Result<()> {
     Ok(())
 }
 
-/// Writes the pictures, and those of the error and without noise.
+/// Writes the pictures, the error map and the denoised picture.
 fn write_pictures(outcome: &Outcome, pictures: &[PathBuf]) -> Result<()> {
     let Outcome { options, scene, rendered, .. } = outcome;
     let provenance = options.samples.as_ref().map(|_| Provenance::of(scene));
@@ -100,7 +100,7 @@ fn write_pictures(outcome: &Outcome, pictures: &[PathBuf]) -> Result<()> {
         (_, Some(aovs), picture::Format::Exr) if options.aov => rendered.film.save_with_aovs(path, aovs),
         _ => rendered.film.save(path, scene.settings.exposure),
     };
-    // Every file is tried: one that cannot be written must not cost the others.
+    // All are tried before an error is returned: if one cannot be written, the others still are.
     let saved: Vec<_> = pictures.iter().map(save).collect();
     saved.into_iter().collect::<Result<()>>()?;
     let FilmSettings { width, height, .. } = scene.film;

@@ -1,7 +1,7 @@
 //! How far a render is: a bar on a terminal, plain lines elsewhere.
 
-use crate::figures::{duration, percent};
-use crate::printing::note;
+use crate::shared::printing::note;
+use crate::shared::units::{duration, percent};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use luminaire::render::Progress;
 use std::io::IsTerminal;
@@ -23,7 +23,7 @@ pub enum Reporter {
 }
 
 impl Reporter {
-    /// What fits stderr.
+    /// A bar on a terminal, lines elsewhere, nothing if `quiet`.
     pub fn new(quiet: bool) -> Self {
         if quiet {
             return Reporter::Quiet;
@@ -36,7 +36,7 @@ impl Reporter {
         Reporter::Bar(bar.with_style(style))
     }
 
-    /// Takes note of `progress`.
+    /// Shows `progress`; as lines, only when the next one is due.
     pub fn update(&mut self, progress: &Progress) {
         match self {
             Reporter::Quiet => {}

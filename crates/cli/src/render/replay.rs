@@ -1,8 +1,8 @@
 //! `luminaire render --pixel X,Y --sample N`: one sample again, ray by ray.
 
-use crate::printing::print;
-use crate::table::table;
-use crate::values::Pixel;
+use crate::shared::printing::print;
+use crate::shared::table::table;
+use crate::shared::values::Pixel;
 use luminaire::Result;
 use luminaire::backend::{Backend, Renderer};
 use luminaire::film::{Batch, Tile};

@@ -1,4 +1,4 @@
-//! The figures of a run, as JSON.
+//! The figures of a run that `--stats` writes, as JSON.
 
 use luminaire::backend::Renderer;
 use luminaire::render::{End, Rendered};

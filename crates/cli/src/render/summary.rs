@@ -1,11 +1,11 @@
-//! What is printed at the end of a render.
+//! The text on stdout after a render: its files, the estimated error, times and speed.
 
 use super::outcome::Outcome;
-use crate::figures::{duration, percent};
+use crate::shared::units::{duration, percent};
 use luminaire::render::End;
 use std::path::PathBuf;
 
-/// Where the files are, how long it took, and how fast it was.
+/// The summary; `written` are the pictures that were written.
 pub fn summary(outcome: &Outcome, written: &[PathBuf]) -> String {
     let Outcome { options, rendered, seconds, .. } = outcome;
     let progress = &rendered.progress;

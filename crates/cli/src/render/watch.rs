@@ -1,6 +1,6 @@
 //! `luminaire render --watch`: render again whenever a shader changes, for those who change them.
 
-use crate::printing::{self, note};
+use crate::shared::printing::{self, note};
 use luminaire::{Result, gpu};
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -107,7 +107,7 @@ impl EstimatorOptions {
         .find_map(|(name, given)| given.then_some(name))
     }
 
-    /// Refuses options that mean nothing together.
+    /// Refuses options that contradict each other.
     pub fn check(&self) -> Result<()> {
         match (self.path_option(), self.estimator) {
             (Some(option), Some(Choice::Simple)) => Err(Error::Usage(format!(
@@ -131,7 +131,7 @@ impl EstimatorOptions {
         Ok(())
     }
 
-    /// Puts the options in the place of what the scene says; gives what deserves a warning.
+    /// Puts the options in the place of what the scene says; returns a warning, if there is one.
     fn change(&self, integrator: &mut Integrator) -> Result<Option<String>> {
         let mut warning = None;
         match (self.estimator, &*integrator) {

@@ -1,4 +1,4 @@
-//! Figures as people read them.
+//! Numbers with their units, as people read them: shares in per cent, durations.
 
 /// A share in per cent, with two digits that count.
 pub fn percent(share: f64) -> String {

@@ -1,9 +1,9 @@
-//! The line of figures in the window's title.
+//! The figures in the window's title: samples, speed, error, tracer.
 
 use super::shown::Shown;
 use luminaire::render::Progress;
 
-/// How far a film of `size` is, in a window of another size perhaps, and by which tracer.
+/// The figures of a film of `size`, which is named where the window has another one, and the tracer.
 pub fn figures(progress: &Progress, shown: Shown, size: (u32, u32), window: (u32, u32), tracer: &str) -> String {
     let coarse = if size == window { String::new() } else { format!(" of {} x {}", size.0, size.1) };
     let error = match (progress.error, shown) {

@@ -1,4 +1,4 @@
-//! `--width` and `--height`.
+//! The size of a film after `--width` and `--height`, which each subcommand defines with its own limits.
 
 use luminaire::scene::FilmSettings;
 
@@ -9,12 +9,12 @@ pub struct FilmSize {
     pub width: Option<u32>,
     /// Height, if it is given.
     pub height: Option<u32>,
-    /// The most that a side which follows from the other one can have.
+    /// The largest value of a side that is computed from the other one.
     pub largest: u32,
 }
 
 impl FilmSize {
-    /// Puts it in the place of the scene's size. One side alone keeps the scene's aspect ratio; no side, its size.
+    /// Changes the film's size. If one side is given, the other keeps the scene's aspect ratio; if none is, the size stays.
     pub fn apply(self, film: &mut FilmSettings) {
         let FilmSettings { width, height, .. } = *film;
         let scaled = |given: u32, this: u32, other: u32| {

@@ -1,8 +1,8 @@
-//! Links of pages to folders.
+//! The relative path by which a page links to a folder.
 
 use std::path::{Component, Path};
 
-/// How a page names a folder: relative to its own, with slashes, so that both can be moved together.
+/// The path of `folder` relative to the folder of `page`, with slashes: the link still works when both are moved together.
 pub fn seen_from(page: &Path, folder: &Path) -> String {
     let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     let (page, folder) = (absolute(page), absolute(folder));

@@ -1,4 +1,4 @@
-//! Exit codes of the process that the library's errors do not give.
+//! The exit codes in the help, and those that the library's errors do not give.
 
 /// The exit codes of `luminaire` and of `luminaire render`, for their help.
 pub const EXIT_CODES: &str = "\

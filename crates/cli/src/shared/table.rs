@@ -1,4 +1,4 @@
-//! Tables of plain text.
+//! Tables of plain text for the terminal.
 
 /// Rows with their columns aligned, each line indented by `indent` spaces.
 pub fn table(indent: usize, rows: &[Vec<String>]) -> String {

@@ -1,4 +1,4 @@
-//! `--backend` and `--device`.
+//! What `--backend` and `--device` ask of the library.
 
 use luminaire::backend::{Backend, Request};
 use luminaire::{Error, Result};

@@ -1,7 +1,7 @@
-//! Ctrl-C and SIGTERM.
+//! What Ctrl-C and SIGTERM do to a run.
 
-use crate::exit_codes::INTERRUPTED;
-use crate::printing::Notes;
+use crate::shared::exit_codes::INTERRUPTED;
+use crate::shared::printing::Notes;
 use luminaire::{Error, Result};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -14,8 +14,8 @@ static RENDERING: AtomicBool = AtomicBool::new(false);
 /// True while files are written, which an exit would leave half done beside their targets.
 static WRITING: AtomicBool = AtomicBool::new(false);
 
-/// Listens: an interrupt ends the process, unless a render runs ([`render_begins`]), which the first one stops, or files are written
-/// ([`hold_off`]), when it does nothing. A usage error if something else listens already.
+/// Handles interrupts from now on. While files are written ([`hold_off`]), they do nothing; while a render runs ([`render_begins`]), the first one
+/// stops it; otherwise they end the process. A usage error if there is a handler already.
 pub fn listen(notes: Notes) -> Result<()> {
     ctrlc::set_handler(move || {
         if WRITING.load(Ordering::SeqCst) {
@@ -39,7 +39,7 @@ pub fn render_begins() {
     RENDERING.store(true, Ordering::SeqCst);
 }
 
-/// Writes files, which no interrupt cuts short.
+/// Runs `write`, which writes files; interrupts do nothing meanwhile.
 pub fn hold_off<T>(write: impl FnOnce() -> T) -> T {
     WRITING.store(true, Ordering::SeqCst);
     let written = write();
@@ -47,7 +47,7 @@ pub fn hold_off<T>(write: impl FnOnce() -> T) -> T {
     written
 }
 
-/// Ends the process without the clean-up of libraries: a driver that is just being loaded does not survive that.
+/// Ends the process without the clean-up of libraries, in which a driver that is just being loaded could crash.
 fn exit_now() -> ! {
     #[cfg(unix)]
     signal_hook::low_level::exit(INTERRUPTED.into());

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use std::fmt::Display;
 use std::io::Write;
 
-/// Prints a result on stdout. A reader that closes the pipe early (`| head`) is content with less. Fails where stdout cannot be written.
+/// Prints a result on stdout. Fails if stdout cannot be written, but not if its reader closes the pipe early (`| head`).
 pub fn print(text: &str) -> luminaire::Result<()> {
     let mut out = std::io::stdout().lock();
     match out.write_all(harmless(text).as_bytes()).and_then(|()| out.flush()) {
@@ -14,7 +14,7 @@ pub fn print(text: &str) -> luminaire::Result<()> {
     }
 }
 
-/// Prints a line on stderr. A stderr that nobody reads is no reason to fail.
+/// Prints a line on stderr. If stderr cannot be written, nothing happens.
 pub fn note(line: &str) {
     let _ = writeln!(std::io::stderr(), "{}", harmless(line));
 }
@@ -52,7 +52,7 @@ impl Notes {
     }
 }
 
-/// A text without control characters: names come from files, and a terminal would obey.
+/// A text with its control characters replaced: names come from files, and a terminal would carry out escape sequences in them.
 fn harmless(text: &str) -> Cow<'_, str> {
     let control = |c: char| c.is_control() && c != '\n' && c != '\t';
     if text.contains(control) { Cow::Owned(text.replace(control, "\u{fffd}")) } else { Cow::Borrowed(text) }

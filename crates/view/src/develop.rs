@@ -1,4 +1,4 @@
-//! From a film to what a window shows.
+//! Developing: from a film to the 8-bit picture that a window shows.
 
 use super::first_hit::FirstHit;
 use super::shown::Shown;

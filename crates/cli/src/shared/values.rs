@@ -1,11 +1,11 @@
-//! Values of options: read, and refused in words that say what is expected.
+//! Parsers for the values of options; their errors say what is expected.
 
 use std::ops::Range;
 
 /// Seconds above 0.
 pub fn seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
-        // More than a thousand years, no clock counts.
+        // A clock's time plus more than about a thousand years may overflow.
         Ok(seconds) if seconds > 0.0 && seconds < 3.2e10 => Ok(seconds),
         _ => Err("expected a number of seconds above 0, for example 30 or 0.5".into()),
     }

@@ -1,0 +1,12 @@
+//! What several subcommands share: options, their values, and what they print.
+
+pub mod backend_name;
+pub mod estimator;
+pub mod exit_codes;
+pub mod film_size;
+pub mod interrupts;
+pub mod printing;
+pub mod relative_path;
+pub mod table;
+pub mod units;
+pub mod values;

@@ -1,0 +1,48 @@
+//! `luminaire inspect`: what was loaded, and what was not.
+
+mod common;
+
+use common::{Folder, stderr};
+use std::process::Command;
+
+#[test]
+fn inspect_tells_what_was_loaded() {
+    let folder = Folder::new();
+    let output = folder.luminaire(&["inspect", "good.obj"]).output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let said = String::from_utf8_lossy(&output.stdout);
+    for part in ["1 in 1 object;", "lamp", "1 emissive triangles", "warnings"] {
+        assert!(said.contains(part), "{part} is not in\n{said}");
+    }
+}
+
+#[test]
+fn inspect_lists_the_fallback_where_it_is_seen() {
+    let folder = Folder::new();
+    let face = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    folder.write("own.mtl", "newmtl default\nKd .1 .2 .3\n");
+    let names = |obj: &str| {
+        folder.write("a.obj", obj);
+        let output = folder.luminaire(&["inspect", "a.obj"]).output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let said = String::from_utf8_lossy(&output.stdout).into_owned();
+        let rows = said.lines().map(str::trim).skip_while(|line| *line != "materials").skip(2);
+        let rows = rows.take_while(|line| !line.is_empty());
+        rows.map(|line| line.split("  ").next().unwrap().to_owned()).collect::<Vec<_>>()
+    };
+    assert_eq!(names(face), ["default"]);
+    assert_eq!(names(&format!("mtllib own.mtl\nusemtl default\n{face}")), ["default"]);
+    assert_eq!(names(&format!("mtllib own.mtl\n{face}usemtl default\nf 1 2 3\n")), ["default (built in)", "default"]);
+    assert_eq!(names(&format!("mtllib good.mtl\nusemtl lamp\n{face}")), ["lamp"]);
+}
+
+#[test]
+fn a_pipe_as_a_material_library() {
+    let folder = Folder::new();
+    let made = Command::new("mkfifo").arg(folder.path().join("pipe.mtl")).status().unwrap();
+    assert!(made.success());
+    folder.write("pipe.obj", "mtllib pipe.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    // It does not wait for somebody to write into the pipe.
+    let output = folder.luminaire(&["inspect", "pipe.obj"]).output().unwrap();
+    assert!(output.status.success() && String::from_utf8_lossy(&output.stdout).contains("not a regular file"));
+}
