@@ -5,6 +5,7 @@ use super::renders::{picture, render_samples, warm_up};
 use crate::{Workbench, metrics};
 use luminaire::Result;
 use luminaire::backend::Backend;
+use luminaire::film::relative_square;
 use luminaire::picture::Picture;
 use luminaire::scene::Scene;
 
@@ -22,11 +23,8 @@ impl Reference {
     pub fn given(picture: &Picture) -> Self {
         let own_error = picture.error.as_ref().and_then(|errors| {
             let pairs = errors.iter().zip(&picture.rgb).filter(|(e, b)| metrics::finite(e) && metrics::finite(b));
-            let all: Vec<f64> = pairs
-                .flat_map(|(e, b)| {
-                    (0..3).map(|c| f64::from(e[c]).powi(2) / (f64::from(b[c]).powi(2) + luminaire::film::REL_MSE_FLOOR))
-                })
-                .collect();
+            let all: Vec<f64> =
+                pairs.flat_map(|(e, b)| (0..3).map(|c| relative_square(f64::from(e[c]), f64::from(b[c])))).collect();
             (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64)
         });
         Reference { picture: picture.clone(), own_error, words: "the picture that was given".into() }
