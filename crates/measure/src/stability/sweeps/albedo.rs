@@ -1,13 +1,13 @@
 //! Albedos near one in a closed room: what ends a path decides about bias, noise and time.
 
-use super::judge::{certain_bias, up_to};
-use super::rooms::{furnace, furnace_radiance, without_roulette};
-use super::sweep::{Definition, Family, Findings, Sweep};
-use super::trial::Trial;
-use super::verdict::{Judgement, SURE, Verdict, Worse, place, stretch};
 use crate::Workbench;
 use crate::chart::{Axis, Chart, Point, Series};
 use crate::report::words::{count, deviation, share};
+use crate::stability::judge::{certain_bias, up_to};
+use crate::stability::rooms::{furnace, furnace_radiance, without_roulette};
+use crate::stability::sweep::{Definition, Family, Findings, Sweep};
+use crate::stability::trial::Trial;
+use crate::stability::verdict::{Judgement, SURE, Verdict, Worse, place, stretch};
 use luminaire::Result;
 use luminaire::backend::Backend;
 use luminaire::reference::scatter::{MAX_SURVIVAL, SURE_THROUGHPUT};

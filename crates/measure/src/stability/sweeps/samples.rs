@@ -1,12 +1,12 @@
 //! Adding up very many samples: what the sum's precision does to the mean.
 
-use super::judge::everywhere;
-use super::series::{above_from, largest};
-use super::sweep::{Definition, Family, Findings, Sweep};
-use super::verdict::{Judgement, Verdict, Worse, stretch};
 use crate::Workbench;
 use crate::chart::{Axis, Chart, Point, Series};
 use crate::report::words::{count, share};
+use crate::stability::judge::everywhere;
+use crate::stability::limits::{above_from, largest};
+use crate::stability::sweep::{Definition, Family, Findings, Sweep};
+use crate::stability::verdict::{Judgement, Verdict, Worse, stretch};
 use glam::{Affine3A, Vec3};
 use luminaire::film::{AovSum, Batch, PixelSum, Tile};
 use luminaire::render::{Limits, Traced, Tracer, render};

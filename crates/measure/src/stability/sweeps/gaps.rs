@@ -1,12 +1,12 @@
 //! Surfaces close to each other.
 
-use super::geometry::{COMPUTE_BVH, Departures, Stand, T_MIN, add, chart, decades, per_million};
-use super::judge::{geometric, up_to};
-use super::sweep::{Definition, Family, Findings, Sweep};
-use super::verdict::{Worse, stretch};
 use crate::Workbench;
 use crate::chart::Axis;
 use crate::rays::{Random, Ray};
+use crate::stability::geometry::{COMPUTE_BVH, Departures, Stand, T_MIN, add, chart, decades, per_million};
+use crate::stability::judge::{geometric, up_to};
+use crate::stability::sweep::{Definition, Family, Findings, Sweep};
+use crate::stability::verdict::{Worse, stretch};
 use glam::{Affine3A, Vec3};
 use luminaire::Result;
 use luminaire::reference::hit::Hit;

@@ -1,14 +1,14 @@
 //! What ends a path too early: thresholds, limits and roulette without weights, their bias against the work they save.
 
-use super::judge::up_to;
-use super::rooms::{furnace, furnace_radiance, room, without_roulette};
-use super::series::above_from;
-use super::sweep::{Definition, Family, Findings, Sweep};
-use super::trial::Trial;
-use super::verdict::{Judgement, SURE, Verdict, Worse, place, stretch};
 use crate::Workbench;
 use crate::chart::{Axis, Chart, Point, Series};
 use crate::report::words::{deviation, share};
+use crate::stability::judge::up_to;
+use crate::stability::limits::above_from;
+use crate::stability::rooms::{furnace, furnace_radiance, room, without_roulette};
+use crate::stability::sweep::{Definition, Family, Findings, Sweep};
+use crate::stability::trial::Trial;
+use crate::stability::verdict::{Judgement, SURE, Verdict, Worse, place, stretch};
 use luminaire::Result;
 use luminaire::backend::Backend;
 use luminaire::scene::{Estimator, Extinction};

@@ -1,13 +1,13 @@
 //! Glass of all indices of refraction.
 
-use super::geometry::{COMPUTE_BVH, REFERENCE, add, chart, name_of, named, value};
-use super::glass::{AroundGlass, around_glass, glass};
-use super::judge::{everywhere, geometric};
-use super::sweep::{Definition, Family, Findings, Sweep};
-use super::verdict::{Worse, stretch};
 use crate::Workbench;
 use crate::chart::{Axis, Chart, Point};
 use crate::rays::Random;
+use crate::stability::geometry::{COMPUTE_BVH, REFERENCE, add, chart, name_of, named, value};
+use crate::stability::glass::{AroundGlass, around_glass, glass};
+use crate::stability::judge::{everywhere, geometric};
+use crate::stability::sweep::{Definition, Family, Findings, Sweep};
+use crate::stability::verdict::{Worse, stretch};
 use glam::{Affine3A, DVec3, Vec3};
 use luminaire::Result;
 use luminaire::backend::Backend;

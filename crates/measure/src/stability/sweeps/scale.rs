@@ -1,16 +1,16 @@
 //! How large or small a scene may be.
 
-use super::geometry::{
-    COMPUTE_BVH, Stand, T_MIN, add, baked, chart, decades, lost, name_of, named, per_million, rays_to_faces,
-    rays_to_features, value,
-};
-use super::judge::{everywhere, geometric};
-use super::sweep::{Definition, Family, Findings, Sweep};
-use super::verdict::{Worse, stretch};
 use crate::Workbench;
 use crate::chart::{Axis, Chart, Point};
 use crate::intersect_f32::{Test, Triangles};
 use crate::rays::Random;
+use crate::stability::geometry::{
+    COMPUTE_BVH, Stand, T_MIN, add, baked, chart, decades, lost, name_of, named, per_million, rays_to_faces,
+    rays_to_features, value,
+};
+use crate::stability::judge::{everywhere, geometric};
+use crate::stability::sweep::{Definition, Family, Findings, Sweep};
+use crate::stability::verdict::{Worse, stretch};
 use glam::{Affine3A, Vec3};
 use luminaire::Result;
 use luminaire::backend::Backend;

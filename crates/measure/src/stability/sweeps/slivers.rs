@@ -1,15 +1,15 @@
 //! Triangles that are long and narrow, that have no area, or that lie on each other.
 
-use super::geometry::{
-    BARE_BOXES, COMPUTE_BVH, Departures, RAY_QUERY, Stand, T_MIN, add, baked, chart, decades, lost, named, per_million,
-    percentile_999, rays_to_faces, rays_to_features, value,
-};
-use super::judge::{geometric, off_from, up_to};
-use super::sweep::{Definition, Family, Findings, Sweep};
-use super::verdict::{Verdict, Worse, place, stretch};
 use crate::Workbench;
 use crate::chart::{Axis, Chart, Point};
 use crate::rays::{Random, Ray};
+use crate::stability::geometry::{
+    BARE_BOXES, COMPUTE_BVH, Departures, RAY_QUERY, Stand, T_MIN, add, baked, chart, decades, lost, named, per_million,
+    percentile_999, rays_to_faces, rays_to_features, value,
+};
+use crate::stability::judge::{geometric, off_from, up_to};
+use crate::stability::sweep::{Definition, Family, Findings, Sweep};
+use crate::stability::verdict::{Verdict, Worse, place, stretch};
 use glam::{Affine3A, Vec3};
 use luminaire::Result;
 use luminaire::reference::hit::Hit;

@@ -1,12 +1,14 @@
 //! Rays at edges and vertices, from straight on to grazing.
 
-use super::geometry::{COMPUTE_BVH, Stand, add, baked, chart, decades, distance_error, named, per_million, value};
-use super::judge::{geometric, up_to};
-use super::sweep::{Definition, Family, Findings, Sweep};
-use super::verdict::{Worse, stretch};
 use crate::Workbench;
 use crate::chart::{Axis, Chart, Point};
 use crate::rays::{Random, Ray};
+use crate::stability::geometry::{
+    COMPUTE_BVH, Stand, add, baked, chart, decades, distance_error, named, per_million, value,
+};
+use crate::stability::judge::{geometric, up_to};
+use crate::stability::sweep::{Definition, Family, Findings, Sweep};
+use crate::stability::verdict::{Worse, stretch};
 use glam::{Affine3A, Vec3};
 use luminaire::Result;
 use luminaire::scene::Mesh;

@@ -1,22 +1,22 @@
 //! Very many luminaires, instances and bounces: what they cost, and what they do to the error.
 
-use super::judge::{light, up_to};
-use super::rooms::{furnace, without_roulette};
-use super::series::largest;
-use super::sweep::{Definition, Family, Findings, Sweep};
-use super::trial::Trial;
-use super::verdict::{Verdict, Worse, stretch};
+mod scenes;
+mod timing;
+
 use crate::Workbench;
 use crate::chart::{Axis, Chart, Point, Series};
 use crate::report::words::{count, share};
-use glam::{Affine3A, Vec3};
+use crate::stability::judge::{light, up_to};
+use crate::stability::limits::largest;
+use crate::stability::sweep::{Definition, Family, Findings, Sweep};
+use crate::stability::trial::Trial;
+use crate::stability::verdict::{Verdict, Worse, stretch};
 use luminaire::Result;
 use luminaire::backend::Backend;
 use luminaire::render::Tracer;
-use luminaire::scene::build::*;
-use luminaire::scene::{
-    Environment, Estimator, FilmSettings, Integrator, LightSampling, Mesh, Projection, Scene, Sensor, Triangle,
-};
+use luminaire::scene::LightSampling;
+use scenes::{SIZE, city, crowd, film, long_paths};
+use timing::compare;
 
 /// The sweep over numbers of things.
 pub const DEFINITION: Definition = Definition {
@@ -28,7 +28,7 @@ pub const DEFINITION: Definition = Definition {
 
 struct Steps {
     numbers: Vec<u32>,
-    /// Seconds of one timing, of which there are [`ROUNDS`] for each number.
+    /// Seconds of one timing, of which there are several for each number.
     seconds: f64,
     /// Samples a pixel from which the noise is estimated.
     samples: u32,
@@ -37,9 +37,6 @@ struct Steps {
 /// The default, as a method, and what it is held against.
 const BOTH: &str = "both, weighted";
 const DIRECT: &str = "direct light alone";
-/// Timings of each number, in turn with the smallest; their least counts.
-const ROUNDS: usize = 4;
-const SIZE: (u32, u32) = (16, 16);
 
 fn run(bench: &Workbench) -> Result<Sweep> {
     let steps = match bench.long {
@@ -51,113 +48,6 @@ fn run(bench: &Workbench) -> Result<Sweep> {
         },
     };
     sweep(bench, &steps)
-}
-
-/// A street without end: a floor of `n` squares with a small lamp one unit above the middle of each, of which the picture shows one.
-/// Direct light only.
-fn city(n: u32, light_sampling: LightSampling) -> Scene {
-    let mut scene = empty(SIZE.0, SIZE.1);
-    let side = f64::from(n).sqrt().ceil() as u32;
-    let middle = (side / 2) as f32 + 0.5;
-    scene.sensor = Sensor {
-        position: Vec3::new(middle, 0.9, middle),
-        target: Vec3::new(middle, 0.0, middle),
-        up: Vec3::Z,
-        projection: Projection::Orthographic { height: 1.0 },
-        lens: None,
-    };
-    let floor = quad(Vec3::new(0.0, 0.0, side as f32), Vec3::X * side as f32, Vec3::Z * -(side as f32));
-    add(&mut scene, floor, matte(Vec3::splat(0.5)), Affine3A::IDENTITY);
-    let mut lamps = Mesh { name: "lamps".into(), ..Mesh::default() };
-    // The square that is seen has the first lamp, the others follow in rows.
-    let places = (0..side * side).map(|i| (i + (side / 2) * (side + 1)) % (side * side)).take(n as usize);
-    for place in places {
-        let corner = Vec3::new((place % side) as f32 + 0.45, 1.0, (place / side) as f32 + 0.45);
-        let first = lamps.positions.len() as u32;
-        lamps.positions.extend([Vec3::ZERO, Vec3::X, Vec3::Z].map(|v| corner + 0.1 * v));
-        lamps.triangles.push(Triangle { vertices: [first, first + 1, first + 2], material: 0 });
-    }
-    add(&mut scene, lamps, lamp(Vec3::splat(100.0)), Affine3A::IDENTITY);
-    scene.integrator = Integrator::Path(Estimator { light_sampling, max_bounces: Some(0), ..Estimator::default() });
-    scene
-}
-
-/// `n` spheres of 80 triangles that fill the picture, in white light.
-fn crowd(n: u32) -> Scene {
-    let mut scene = empty(SIZE.0, SIZE.1);
-    let side = f64::from(n).sqrt().ceil() as u32;
-    scene.sensor.position = Vec3::new(0.0, 0.0, 1.5);
-    let radius = 0.5 / side as f32;
-    for i in 0..n {
-        let place = |i: u32| (2 * i + 1) as f32 * radius - 0.5;
-        let map = Affine3A::from_translation(Vec3::new(place(i % side), place(i / side), 0.0))
-            * Affine3A::from_scale(Vec3::splat(radius));
-        if i == 0 {
-            add(&mut scene, icosphere(1), matte(Vec3::splat(0.5)), map);
-        } else {
-            let mut object = scene.objects[0].clone();
-            object.object_to_world = map;
-            scene.objects.push(object);
-        }
-    }
-    scene.environment = Some(Environment { radiance: Vec3::ONE, image: None, rotation: 0.0 });
-    scene.integrator =
-        Integrator::Path(Estimator { light_sampling: LightSampling::None, max_bounces: Some(2), ..without_roulette() });
-    scene
-}
-
-/// A closed room whose paths have `n` bounces, by an albedo at which the last one still has more than a third of the light.
-fn long_paths(n: u32) -> (Scene, f64) {
-    let albedo = (1.0 - 1.0 / f64::from(n + 1)) as f32;
-    let scene = furnace((8, 1), albedo, Estimator { max_bounces: Some(n), ..without_roulette() });
-    let a = f64::from(albedo);
-    (scene, (1.0 - a.powf(f64::from(n) + 2.0)) / (1.0 - a))
-}
-
-fn film(scene: &Scene) -> (u32, u32) {
-    let FilmSettings { width, height, .. } = scene.film;
-    (width, height)
-}
-
-/// How much longer a ray takes in `scene` than in `smallest`, timed in turn, and the tracer of `scene` with the bytes it holds.
-struct Compared {
-    ratio: f64,
-    bytes: Option<f64>,
-    tracer: Box<dyn Tracer>,
-}
-
-/// A tracer that is warm, and how many samples take it long enough to be timed.
-fn timed(tracer: &mut dyn Tracer, size: (u32, u32), rays: f64, seconds: f64) -> Result<u32> {
-    // The first run compiles the kernel. Two samples at least, so that two cores have work.
-    Trial::new(tracer, size, 1, rays)?;
-    let mut samples = 2;
-    while Trial::new(tracer, size, samples, rays)?.seconds < seconds && samples < 4096 {
-        samples *= 2;
-    }
-    Ok(samples)
-}
-
-fn compare(
-    bench: &Workbench,
-    backend: Backend,
-    (smallest, scene): (&Scene, &Scene),
-    rays: [f64; 2],
-    seconds: f64,
-) -> Result<Compared> {
-    let mut small = bench.tracer(smallest, backend)?;
-    let before = bench.allocated_bytes(backend);
-    let mut tracer = bench.tracer(scene, backend)?;
-    let bytes = before.zip(bench.allocated_bytes(backend)).map(|(before, after)| (after - before) as f64);
-    let size = film(scene);
-    let counts = [timed(small.as_mut(), size, rays[0], seconds)?, timed(tracer.as_mut(), size, rays[1], seconds)?];
-    let mut least = [f64::INFINITY; 2];
-    for _ in 0..ROUNDS {
-        for (which, tracer) in [&mut small, &mut tracer].into_iter().enumerate() {
-            let trial = Trial::new(tracer.as_mut(), size, counts[which], rays[which])?;
-            least[which] = least[which].min(trial.seconds_a_ray());
-        }
-    }
-    Ok(Compared { ratio: least[1] / least[0], bytes, tracer })
 }
 
 /// The series of one backend over the numbers.
@@ -337,6 +227,7 @@ fn findings(steps: &Steps, [lights, objects, bounces, memory, noise, drift]: [&C
 #[cfg(test)]
 mod tests {
     use super::*;
+    use luminaire::scene::Scene;
 
     /// Many lamps do not change what is right, long paths lose next to nothing, and choosing both ways is never noisier.
     #[test]

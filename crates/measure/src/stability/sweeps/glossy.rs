@@ -1,13 +1,13 @@
 //! Glossy lobes from flat to mirror-like: who finds the light, and whether any is lost or made.
 
-use super::judge::{everywhere, light};
-use super::spot::{
-    Spot, Tally, chart, looking_from, noise_axis, off, over_parallelogram, percent, series, without_roulette,
-};
-use super::sweep::{Definition, Family, Findings, Sweep};
-use super::verdict::{Verdict, Worse, place, stretch};
 use crate::Workbench;
 use crate::chart::{Axis, Point, Series};
+use crate::stability::judge::{everywhere, light};
+use crate::stability::light::{
+    Spot, Tally, chart, looking_from, noise_axis, off, over_parallelogram, percent, series, without_roulette,
+};
+use crate::stability::sweep::{Definition, Family, Findings, Sweep};
+use crate::stability::verdict::{Verdict, Worse, place, stretch};
 use glam::{Affine3A, DVec3, Vec3};
 use luminaire::Result;
 use luminaire::backend::Backend;

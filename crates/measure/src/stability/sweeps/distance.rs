@@ -1,15 +1,15 @@
 //! How far from the origin a scene may lie.
 
-use super::geometry::{
-    COMPUTE_BVH, RAY_QUERY, Stand, T_MIN, add, baked, chart, decades, distance_error, lost, named, per_million, placed,
-    rays_to_faces, rays_to_features, value,
-};
-use super::judge::{geometric, up_to};
-use super::sweep::{Definition, Family, Findings, Sweep};
-use super::verdict::{Worse, stretch};
 use crate::Workbench;
 use crate::chart::{Axis, Chart, Point};
 use crate::rays::Random;
+use crate::stability::geometry::{
+    COMPUTE_BVH, RAY_QUERY, Stand, T_MIN, add, baked, chart, decades, distance_error, lost, named, per_million, placed,
+    rays_to_faces, rays_to_features, value,
+};
+use crate::stability::judge::{geometric, up_to};
+use crate::stability::sweep::{Definition, Family, Findings, Sweep};
+use crate::stability::verdict::{Worse, stretch};
 use glam::{Affine3A, Vec3};
 use luminaire::Result;
 use luminaire::scene::build::icosphere;
