@@ -12,7 +12,8 @@ use luminaire::reference::Reference;
 use luminaire::scene::build::{add, empty, icosphere, matte};
 use luminaire_measure::chart::Chart;
 use luminaire_measure::intersect_f32::{Test, Triangles};
-use luminaire_measure::rays::{Random, Ray, reference_hits};
+use luminaire_measure::random::Random;
+use luminaire_measure::rays::{Ray, reference_hits};
 use luminaire_measure::stability::sweeps::{distance, edges, eta, gaps, instances, scale, slivers, touching_glass};
 
 const REFERENCE: &str = "f64 reference";

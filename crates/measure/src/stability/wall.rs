@@ -15,6 +15,9 @@ pub(super) const LIGHT: Vec3 = Vec3::new(0.25, 1.0, 0.0);
 /// Its image behind the wall.
 pub(super) const IMAGE: Vec3 = Vec3::new(1.75, 1.0, 0.0);
 
+/// The wall: a corner and two edges.
+pub(super) const WALL: [Vec3; 3] = [Vec3::new(1.0, 0.0, -1.0), Vec3::new(0.0, 2.0, 0.0), Vec3::new(0.0, 0.0, 2.0)];
+
 /// The axis of the noise.
 pub(super) fn variance(of: &str) -> Axis {
     Axis::log(format!("variance of a sample / (light by way of the {of})²"))
@@ -29,6 +32,3 @@ pub(super) fn room(wall: Material) -> Scene {
     add(&mut scene, quad(corner, up, along), wall, Affine3A::IDENTITY);
     scene
 }
-
-/// The wall: a corner and two edges.
-pub(super) const WALL: [Vec3; 3] = [Vec3::new(1.0, 0.0, -1.0), Vec3::new(0.0, 2.0, 0.0), Vec3::new(0.0, 0.0, 2.0)];

@@ -2,7 +2,7 @@
 
 use crate::Workbench;
 use crate::chart::{Axis, Chart, Point};
-use crate::rays::Random;
+use crate::random::Random;
 use crate::stability::geometry::{
     COMPUTE_BVH, RAY_QUERY, Stand, T_MIN, add, baked, chart, decades, distance_error, lost, named, per_million, placed,
     rays_to_faces, rays_to_features, value,

@@ -2,7 +2,8 @@
 
 use crate::Workbench;
 use crate::chart::{Axis, Chart, Point};
-use crate::rays::{Random, Ray};
+use crate::random::Random;
+use crate::rays::Ray;
 use crate::stability::geometry::{
     COMPUTE_BVH, Stand, add, baked, chart, decades, distance_error, named, per_million, value,
 };

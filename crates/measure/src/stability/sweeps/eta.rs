@@ -2,7 +2,7 @@
 
 use crate::Workbench;
 use crate::chart::{Axis, Chart, Point};
-use crate::rays::Random;
+use crate::random::Random;
 use crate::stability::geometry::{COMPUTE_BVH, REFERENCE, add, chart, name_of, named, value};
 use crate::stability::glass::{AroundGlass, around_glass, glass};
 use crate::stability::judge::{everywhere, geometric};

@@ -2,7 +2,8 @@
 
 use crate::Workbench;
 use crate::chart::Axis;
-use crate::rays::{Random, Ray};
+use crate::random::Random;
+use crate::rays::Ray;
 use crate::stability::geometry::{COMPUTE_BVH, Departures, Stand, T_MIN, add, chart, decades, per_million};
 use crate::stability::judge::{geometric, up_to};
 use crate::stability::sweep::{Definition, Family, Findings, Sweep};

@@ -2,7 +2,8 @@
 
 use crate::Workbench;
 use crate::chart::{Axis, Chart, Point};
-use crate::rays::{Random, Ray};
+use crate::random::Random;
+use crate::rays::Ray;
 use crate::stability::geometry::{
     COMPUTE_BVH, RAY_QUERY, Stand, add, chart, decades, distance_error, lost, named, per_million, placed,
     rays_to_faces, rays_to_features, value,

@@ -3,7 +3,7 @@
 use crate::Workbench;
 use crate::chart::{Axis, Chart, Point};
 use crate::intersect_f32::{Test, Triangles};
-use crate::rays::Random;
+use crate::random::Random;
 use crate::stability::geometry::{
     COMPUTE_BVH, Stand, T_MIN, add, baked, chart, decades, lost, name_of, named, per_million, rays_to_faces,
     rays_to_features, value,

@@ -2,7 +2,8 @@
 
 use crate::Workbench;
 use crate::chart::{Axis, Chart, Point};
-use crate::rays::{Random, Ray};
+use crate::random::Random;
+use crate::rays::Ray;
 use crate::stability::geometry::{
     BARE_BOXES, COMPUTE_BVH, Departures, RAY_QUERY, Stand, T_MIN, add, baked, chart, decades, lost, named, per_million,
     percentile_999, rays_to_faces, rays_to_features, value,
