@@ -1,4 +1,4 @@
-//! Which estimators run against each other.
+//! The estimators that run against each other, by their names.
 
 use luminaire::sampling::Sampler;
 use luminaire::scene::{Estimator, Integrator, LightSampling, Scene};

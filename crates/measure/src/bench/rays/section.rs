@@ -1,21 +1,21 @@
-//! What the intersectors did, as tables, charts and sentences.
+//! The section about rays alone as tables, charts and sentences: what every intersector took.
 
 use super::break_even::{BreakEven, Cost};
-use super::definition::Definition;
-use super::figure::{Better, Figure};
-use super::figure_name::FigureName;
 use super::intersectors::{Family, Intersector, Measured, Plan, measure};
-use super::power_law::with_exponents;
-use super::ray_kinds::Kind;
-use super::rounds::Rounds;
-use super::section::Section;
+use super::kinds::Kind;
+use crate::bench::definition::Definition;
+use crate::bench::figure::{Better, Figure};
+use crate::bench::figure_name::FigureName;
+use crate::bench::power_law::with_exponents;
+use crate::bench::rounds::Rounds;
+use crate::bench::section::Section;
 use crate::chart::{Axis, Chart, Series};
 use crate::report::table::Table;
 use crate::report::words::{capital, number};
 use luminaire::backend::Backend;
 
 /// The section about rays alone: ray query against compute BVH by the kind of the rays and the size of the room, with the reference beside them.
-pub(super) const DEFINITION: Definition = Definition {
+pub(in crate::bench) const DEFINITION: Definition = Definition {
     name: "rays",
     title: "Rays alone: ray query against compute BVH",
     scenes: false,

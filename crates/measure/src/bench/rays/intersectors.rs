@@ -1,12 +1,12 @@
 //! Ray query, compute BVH and reference on the same rays, by the kind of the rays and the size of the room.
 
-use super::definition::Progress;
-use super::effort::Effort;
-use super::meshes::{self, Room};
-use super::ray_kinds::{Kind, RaySet, reference_result};
-use super::rounds::Rounds;
-use super::settings::Settings;
+use super::kinds::{Kind, RaySet, reference_result};
 use crate::Workbench;
+use crate::bench::definition::Progress;
+use crate::bench::effort::Effort;
+use crate::bench::meshes::{self, Room};
+use crate::bench::rounds::Rounds;
+use crate::bench::settings::Settings;
 use crate::rays::Ray;
 use glam::Vec3;
 use luminaire::backend::Backend;

@@ -1,4 +1,4 @@
-//! What nothing else beats.
+//! The Pareto front: those renders that no other one beats in both time and error.
 
 /// By what part an error has to be smaller to be worth a higher cost: less is noise, or the rounding of another backend.
 pub(super) const LEAST_GAIN: f64 = 0.05;

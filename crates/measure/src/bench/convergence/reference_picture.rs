@@ -1,7 +1,7 @@
-//! The picture that those of a scene are compared with.
+//! The picture that all renders of a scene are compared with: given as a file, or rendered with many samples.
 
 use super::contenders::Contender;
-use super::renders::{picture, render_samples, warm_up};
+use crate::bench::renders::{picture, render_samples, warm_up};
 use crate::{Workbench, metrics};
 use luminaire::Result;
 use luminaire::backend::Backend;

@@ -1,9 +1,9 @@
 //! One contender on one scene and backend: its renders, round by round.
 
-use super::power_law::PowerLaw;
-use super::reference::Reference;
-use super::renders::{picture, render_samples, warm_up};
-use super::rounds::Rounds;
+use super::reference_picture::Reference;
+use crate::bench::power_law::PowerLaw;
+use crate::bench::renders::{picture, render_samples, warm_up};
+use crate::bench::rounds::Rounds;
 use crate::{Workbench, metrics};
 use luminaire::Result;
 use luminaire::backend::Backend;

@@ -1,13 +1,13 @@
 //! Error over time, measured: every estimator on every backend renders a scene for as long as it has time.
 
 use super::contenders;
-use super::definition::Progress;
-use super::reference::Reference;
-use super::renders::Preparation;
-use super::scene::BenchScene;
-use super::settings::Settings;
+use super::reference_picture::Reference;
 use super::trial::Trial;
 use crate::Workbench;
+use crate::bench::definition::Progress;
+use crate::bench::renders::Preparation;
+use crate::bench::scene::BenchScene;
+use crate::bench::settings::Settings;
 use crate::report::words::number;
 use luminaire::Result;
 use luminaire::backend::Backend;

@@ -1,23 +1,23 @@
-//! Error over time, as sentences, charts and tables: which estimator on which backend has the smallest error after so many seconds.
+//! The section about error over time as sentences, charts and tables: which estimator on which backend has the smallest error after so many seconds.
 
 use super::contenders::words;
-use super::curve::{Measured, measure};
-use super::definition::{Definition, Progress};
-use super::figure::{Better, Figure};
-use super::figure_name::FigureName;
+use super::measured::{Measured, measure};
 use super::pareto::{Candidate, LEAST_GAIN, front};
-use super::rounds::Rounds;
-use super::section::Section;
-use super::settings::Settings;
 use super::trial::{Rung, STEP, Trial};
 use crate::Workbench;
+use crate::bench::definition::{Definition, Progress};
+use crate::bench::figure::{Better, Figure};
+use crate::bench::figure_name::FigureName;
+use crate::bench::rounds::Rounds;
+use crate::bench::section::Section;
+use crate::bench::settings::Settings;
 use crate::chart::{Axis, Chart, FRONT, Point, Series};
 use crate::report::table::Table;
 use crate::report::words::number;
 use luminaire::Result;
 
 /// The section of errors over time and samples.
-pub(super) const DEFINITION: Definition =
+pub(in crate::bench) const DEFINITION: Definition =
     Definition { name: "convergence", title: "Error over time, by estimator and backend", scenes: true, run };
 
 /// Number of the longest renders that have figures beyond seconds and relMSE: two runs that differ by one step still have one in common.

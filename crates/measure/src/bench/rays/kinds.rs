@@ -1,6 +1,6 @@
 //! Rays as a path tracer traces them, kind by kind, and what the reference says that they meet.
 
-use super::meshes::Room;
+use crate::bench::meshes::Room;
 use crate::rays::Ray;
 use glam::DVec3;
 use luminaire::reference::Reference;
