@@ -11,6 +11,11 @@ use rayon::prelude::*;
 /// Added to the squared radiance that a squared error is divided by: what is darker than 0.1 counts less.
 pub const REL_MSE_FLOOR: f64 = 0.01;
 
+/// The squared error `off^2` over the squared radiance, so that dark places count less: what relMSE is the mean of.
+pub fn relative_square(off: f64, reference: f64) -> f64 {
+    off * off / (reference * reference + REL_MSE_FLOOR)
+}
+
 /// The truth of 95 % of all values is within so many standard errors: Student's t for 27 degrees of freedom, 3 of each of 9 pixels.
 pub const INTERVAL_95: f64 = 2.052;
 

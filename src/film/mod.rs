@@ -7,7 +7,7 @@ mod output;
 
 pub use aov::{AovSum, Aovs};
 pub use batch::{Batch, MOST_RADIANCE, PixelSum, Rays, SampleId, Tile};
-pub use error::{ErrorEstimate, ErrorMap, INTERVAL_95, REL_MSE_FLOOR};
+pub use error::{ErrorEstimate, ErrorMap, INTERVAL_95, REL_MSE_FLOOR, relative_square};
 
 use crate::sampling::PARTS;
 use crate::{Error, Result};

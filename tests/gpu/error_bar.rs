@@ -3,7 +3,7 @@
 use super::*;
 use crate::common::scenes::*;
 use glam::{Affine3A, Vec3};
-use luminaire::film::{Batch, Tile};
+use luminaire::film::{Batch, Tile, relative_square};
 use luminaire::render::{End, Limits, Tracer, render};
 use luminaire::scene::{Luminaire, Scene};
 use std::sync::atomic::AtomicBool;
@@ -91,7 +91,7 @@ fn a_noise_limit_is_met() {
         let values = pixels.flat_map(|pixel| std::iter::zip(rendered.film.mean(pixel), truth.mean(pixel)));
         let (mut sum, mut n) = (0.0, 0.0);
         for (found, expected) in values {
-            sum += (found - expected).powi(2) / (expected * expected + 0.01);
+            sum += relative_square(found - expected, expected);
             n += 1.0;
         }
         let relative = (sum / n).sqrt();

@@ -1,6 +1,9 @@
-//! The benchmark: its files, its page, its baseline, and every way in which its command can be wrong.
+//! `luminaire bench`: its files, its page, its baseline, and every way in which the command can be wrong.
 
-use luminaire_measure::bench::*;
+#[path = "../../measure/tests/documents/html.rs"]
+mod html;
+
+use html::check_page;
 use serde_json::Value;
 use std::path::Path;
 use std::process::{Command, Output};
@@ -43,20 +46,6 @@ fn names(folder: &Path) -> Vec<String> {
         std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
     names.sort();
     names
-}
-
-/// A page must be a document that loads nothing: no script, no address, no picture but its own.
-fn check_page(page: &str) {
-    for outside in ["http:", "https:", "<script", "<link", "<img", "src=", "url(", "@import"] {
-        assert!(!page.contains(outside), "the page has {outside:?}");
-    }
-    let body = page.strip_prefix("<!DOCTYPE html>\n").expect("a document type");
-    let document = roxmltree::Document::parse(body).expect("well-formed");
-    for table in document.descendants().filter(|node| node.has_tag_name("table")) {
-        let cells = |row: roxmltree::Node| row.children().filter(|cell| cell.is_element()).count();
-        let rows: Vec<_> = table.descendants().filter(|node| node.has_tag_name("tr")).map(cells).collect();
-        assert!(rows.len() > 1 && rows.iter().all(|count| *count == rows[0]), "{rows:?}");
-    }
 }
 
 /// One run on the CPU, with all its files; then held against better and worse ones.
@@ -149,59 +138,6 @@ fn a_run_and_its_baselines() {
     let output = bench(path, &[&words[..], &["--baseline", "other.json", "--section", "preparation"]].concat());
     assert_eq!(output.status.code(), Some(2), "{}", said(&output));
     assert!(said(&output).contains("\n  separation/room/load-seconds"), "{}", said(&output));
-}
-
-/// A run held against itself has no difference, whatever its spread.
-#[test]
-fn a_run_is_no_worse_than_itself() {
-    let figure = |name: &str, values: &[f64]| Figure::of(name.into(), "s", Better::Lower, values).unwrap();
-    let section = |factor: f64| Section {
-        name: "convergence",
-        title: "A <title>".into(),
-        text: vec!["`code` & text".into()],
-        tables: vec![],
-        charts: vec![],
-        figures: vec![
-            figure("convergence/a/seconds", &[factor, 1.1 * factor, 1.2 * factor]),
-            figure("convergence/b/relmse", &[-0.1, 0.0, 0.1]),
-            figure("convergence/c/seconds", &[1.0]),
-        ],
-    };
-    let settings = Settings {
-        effort: Effort::Quick,
-        rounds: 3,
-        scenes: vec![],
-        backends: vec![luminaire::backend::Backend::Cpu],
-        estimators: vec![],
-        reference: None,
-    };
-    let machine = Machine {
-        device: "none".into(),
-        processor: "one".into(),
-        threads: 1,
-        backends: vec!["cpu".into()],
-        version: "0".into(),
-    };
-    let report = |factor: f64| {
-        Report::new("luminaire bench".into(), &settings, machine.clone(), vec![(SECTIONS[0], Ok(section(factor)))])
-    };
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("bench.json");
-    std::fs::write(&file, report(1.0).json()).unwrap();
-    let baseline = Baseline::read(&file).unwrap();
-    let verdicts = |now: &Report| baseline.changes(now).iter().map(|change| change.verdict).collect::<Vec<_>>();
-    assert!(baseline.warnings(&report(1.0)).is_empty());
-    assert_eq!(verdicts(&report(1.0)), [Verdict::Same, Verdict::Same, Verdict::Unknown]);
-    assert_eq!(verdicts(&report(3.0))[0], Verdict::Worse);
-    assert_eq!(verdicts(&report(0.3))[0], Verdict::Better);
-    assert_eq!(baseline.unmatched(&report(1.0)), [vec![], Vec::<String>::new()]);
-    let page = html(&report(1.0));
-    check_page(&page);
-    assert!(page.contains("A &lt;title&gt;") && page.contains("<code>code</code> &amp; text"), "{page}");
-    // A part that failed is said on the page, and in the JSON.
-    let failed = vec![(SECTIONS[0], Err(luminaire::Error::NoDevice("the device is lost".into())))];
-    let failed = Report::new("luminaire bench".into(), &settings, machine.clone(), failed);
-    assert!(html(&failed).contains("the device is lost") && failed.json().contains("the device is lost"));
 }
 
 #[test]

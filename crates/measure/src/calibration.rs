@@ -2,7 +2,7 @@
 
 use super::statistics::Estimate;
 use luminaire::Result;
-use luminaire::film::{Film, INTERVAL_95, REL_MSE_FLOOR};
+use luminaire::film::{Film, INTERVAL_95, relative_square};
 use luminaire::render::{End, Limits, Tracer, render};
 use luminaire::scene::Scene;
 use std::sync::atomic::AtomicBool;
@@ -90,11 +90,12 @@ pub fn calibrate(
                 for ((found, expected), (estimated, own)) in pairs.zip(variances) {
                     let estimated = f64::from(*estimated).powi(2);
                     let off = (found - expected).powi(2);
-                    let scale = expected.powi(2) + REL_MSE_FLOOR;
-                    all_relative += (off - own) / scale;
+                    let relative_here =
+                        relative_square(found - expected, expected) - relative_square(own.sqrt(), expected);
+                    all_relative += relative_here;
                     if !errors.firefly[pixel] {
                         square += off - own;
-                        relative += (off - own) / scale;
+                        relative += relative_here;
                         covered += u64::from(off <= INTERVAL_95 * INTERVAL_95 * (estimated + own));
                         values += 1;
                     }

@@ -9,6 +9,7 @@ pub mod flip;
 pub mod heat_map;
 pub mod intersect_f32;
 pub mod metrics;
+pub mod random;
 pub mod rays;
 pub mod report;
 pub mod stability;

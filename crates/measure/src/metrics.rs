@@ -1,6 +1,6 @@
 //! How far a picture is from a reference, in numbers.
 
-use luminaire::film::REL_MSE_FLOOR;
+use luminaire::film;
 use luminaire::picture::Picture;
 use luminaire::{Error, Result};
 
@@ -98,7 +98,7 @@ pub fn compare(image: &Picture, reference: &Picture, worst: usize) -> Result<Com
             differences[channel] += d;
             means[channel] += f64::from(b[channel]) / n;
         }
-        let here = relative_square(a, b);
+        let here = relative_squares(a, b);
         relative += here;
         let place = worst_pixels.partition_point(|(square, _)| *square >= here);
         if here > 0.0 && place < worst {
@@ -145,7 +145,7 @@ pub fn relative_errors(image: &Picture, reference: &Picture) -> Vec<f32> {
     assert_eq!(image.rgb.len(), reference.rgb.len());
     let pairs = image.rgb.iter().zip(&reference.rgb);
     pairs
-        .map(|(a, b)| if finite(a) && finite(b) { (relative_square(a, b) / 3.0).sqrt() as f32 } else { f32::NAN })
+        .map(|(a, b)| if finite(a) && finite(b) { (relative_squares(a, b) / 3.0).sqrt() as f32 } else { f32::NAN })
         .collect()
 }
 
@@ -155,12 +155,9 @@ pub fn finite(pixel: &[f32; 3]) -> bool {
 }
 
 /// The sum over the channels.
-fn relative_square(a: &[f32; 3], b: &[f32; 3]) -> f64 {
-    let square = |(a, b): (&f32, &f32)| {
-        let (a, b) = (f64::from(*a), f64::from(*b));
-        (a - b).powi(2) / (b * b + REL_MSE_FLOOR)
-    };
-    a.iter().zip(b).map(square).sum()
+fn relative_squares(a: &[f32; 3], b: &[f32; 3]) -> f64 {
+    let channels = a.iter().zip(b).map(|(a, b)| (f64::from(*a), f64::from(*b)));
+    channels.map(|(a, b)| film::relative_square(a - b, b)).sum()
 }
 
 /// The sum of the variances of both pictures over some pixels, by channel; none unless all of them are known.

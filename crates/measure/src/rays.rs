@@ -5,7 +5,6 @@ use luminaire::Result;
 use luminaire::gpu::probe::{Call, Function, Probe};
 use luminaire::reference::Reference;
 use luminaire::reference::hit::Hit;
-use luminaire::sampling::{random4, uniform};
 use rayon::prelude::*;
 
 /// A ray; its numbers are `f32`, so that every method gets the same ray.
@@ -67,49 +66,4 @@ pub fn reference_leaves(reference: &Reference, rays: &[Ray]) -> Vec<Option<Hit>>
         reference.closest_hit(surfel.offset_ray_origin(wi), wi, f64::INFINITY, 0)
     };
     rays.par_iter().map(leave).collect()
-}
-
-/// Random numbers for places and directions: those of the renderer, one after another.
-#[derive(Debug, Clone)]
-pub struct Random {
-    seed: u32,
-    count: u32,
-}
-
-impl Random {
-    /// The numbers of a seed.
-    pub fn new(seed: u32) -> Self {
-        Random { seed, count: 0 }
-    }
-
-    /// In [0, 1).
-    pub fn uniform(&mut self) -> f64 {
-        self.count += 1;
-        uniform(random4(self.count, 0, 0, self.seed)[0])
-    }
-
-    /// From `low` to `high`, evenly.
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.uniform()
-    }
-
-    /// An index below `n`.
-    pub fn below(&mut self, n: usize) -> usize {
-        (self.uniform() * n as f64) as usize
-    }
-
-    /// In the cube from -1 to 1.
-    pub fn in_cube(&mut self) -> Vec3 {
-        Vec3::from_array([0; 3].map(|_| self.between(-1.0, 1.0) as f32))
-    }
-
-    /// A unit vector, evenly over all directions.
-    pub fn direction(&mut self) -> Vec3 {
-        loop {
-            let v = self.in_cube();
-            if v.length_squared() > 0.01 && v.length_squared() <= 1.0 {
-                return v.normalize();
-            }
-        }
-    }
 }

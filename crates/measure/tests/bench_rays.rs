@@ -9,8 +9,9 @@ use luminaire::gpu::validation_messages;
 use luminaire::reference::Reference;
 use luminaire_measure::Workbench;
 use luminaire_measure::bench::power_law::PowerLaw;
-use luminaire_measure::bench::ray_kinds::{Kind, RaySet};
-use luminaire_measure::bench::{Better, Section, growth, intersectors, meshes, ray_section};
+use luminaire_measure::bench::rays::kinds::{Kind, RaySet};
+use luminaire_measure::bench::rays::{self, intersectors};
+use luminaire_measure::bench::{Better, Section, growth, meshes};
 use std::collections::HashSet;
 
 fn ray_plan(backends: Vec<Backend>) -> intersectors::Plan {
@@ -101,7 +102,7 @@ fn check_rays(bench: &Workbench, backends: Vec<Backend>) {
             assert!(bytes > 48 * 972, "{bytes}");
         }
     }
-    let section = ray_section::section(&plan, &rooms);
+    let section = rays::section(&plan, &rooms);
     assert_sound(&section);
     let gpu = plan.backends.iter().filter(|b| **b != Backend::Cpu).count();
     assert_eq!(figures(&section, "/cpu/"), 4 * 5);

@@ -12,8 +12,9 @@ use luminaire::reference::Reference;
 use luminaire::scene::build::{add, empty, icosphere, matte};
 use luminaire_measure::chart::Chart;
 use luminaire_measure::intersect_f32::{Test, Triangles};
-use luminaire_measure::rays::{Random, Ray, reference_hits};
-use luminaire_measure::stability::{distance, edges, eta, gaps, glass, instances, scale, slivers};
+use luminaire_measure::random::Random;
+use luminaire_measure::rays::{Ray, reference_hits};
+use luminaire_measure::stability::sweeps::{distance, edges, eta, gaps, instances, scale, slivers, touching_glass};
 
 const REFERENCE: &str = "f64 reference";
 const COMPUTE_BVH: &str = "compute BVH";
@@ -129,7 +130,7 @@ fn glass_of_any_index_keeps_the_energy() {
 
 #[test]
 fn bodies_of_glass_near_each_other_keep_the_energy() {
-    let sweep = glass::sweep(&bench(), &[1e-5, 1e-3], 4).expect("the sweep runs");
+    let sweep = touching_glass::sweep(&bench(), &[1e-5, 1e-3], 4).expect("the sweep runs");
     for name in ["side-by-side", "nested"] {
         for method in [REFERENCE, COMPUTE_BVH, RAY_QUERY] {
             // A path or two of 4096 may be cut off after 1000 bounces.

@@ -12,8 +12,8 @@ use luminaire::sampling::{random4, uniform};
 use luminaire::scene::build::{add, empty, lamp, matte, quad};
 use luminaire::scene::{LuminaireTable, SampledLuminaire};
 use luminaire_measure::chart::{Chart, Series};
-use luminaire_measure::stability::near_lamps::{Case, Steps};
-use luminaire_measure::stability::{Sweep, caustics, glossy, near_lamps as lamps};
+use luminaire_measure::stability::Sweep;
+use luminaire_measure::stability::sweeps::{caustics, edge_on, glossy, glossy_caustics, luminaire as lamps};
 use std::f64::consts::TAU;
 
 fn chart<'a>(sweep: &'a Sweep, name: &str) -> &'a Chart {
@@ -71,8 +71,7 @@ fn glossy_plates() {
 /// alone is.
 #[test]
 fn near_and_far_lamps() {
-    let values = vec![1e-4, 1e-2, 1.0, 1e6];
-    let sweep = lamps::sweep(&bench(), &Steps { case: Case::Distance, values, samples: 1 << 14 }).expect("it runs");
+    let sweep = lamps::sweep(&bench(), &[1e-4, 1e-2, 1.0, 1e6], 1 << 14).expect("the sweep runs");
     let energy = chart(&sweep, "energy");
     let default: Vec<_> = energy.series.iter().filter(|s| s.name.starts_with("by solid angle")).collect();
     assert!(default.len() >= 2);
@@ -89,8 +88,7 @@ fn near_and_far_lamps() {
 /// point.
 #[test]
 fn lamps_within_rounding() {
-    let values = vec![5e-6, 7e-6, 1e-5, 2e-5];
-    let sweep = lamps::sweep(&bench(), &Steps { case: Case::Distance, values, samples: 1 << 14 }).expect("it runs");
+    let sweep = lamps::sweep(&bench(), &[5e-6, 7e-6, 1e-5, 2e-5], 1 << 14).expect("the sweep runs");
     let all: Vec<_> =
         chart(&sweep, "energy").series.iter().filter(|s| s.name.starts_with("by solid angle, MIS")).collect();
     assert_all_found(&all, 2e-4, 0.02);
@@ -99,8 +97,7 @@ fn lamps_within_rounding() {
 /// A lamp that is seen from its edge gives what Lambert's formula says, to the rounding of its corners.
 #[test]
 fn lamps_seen_edge_on() {
-    let sweep = lamps::sweep(&bench(), &Steps { case: Case::Tilt, values: vec![1e-4, 1e-2, 1.0], samples: 1 << 14 })
-        .expect("the sweep runs");
+    let sweep = edge_on::sweep(&bench(), &[1e-4, 1e-2, 1.0], 1 << 14).expect("the sweep runs");
     let sampled: Vec<_> = chart(&sweep, "energy").series.iter().filter(|s| s.name.starts_with("by ")).collect();
     assert_all_found(&sampled, 2e-3, 0.02);
 }
@@ -108,7 +105,7 @@ fn lamps_seen_edge_on() {
 /// Of a point luminaire's light a mirror gives nothing, and the straight light exactly; of a lamp's it gives all.
 #[test]
 fn light_by_way_of_a_mirror() {
-    let sweep = caustics::mirror(&bench(), &[0.0, 0.3], 1 << 17).expect("the sweep runs");
+    let sweep = caustics::sweep(&bench(), &[0.0, 0.3], 1 << 17).expect("the sweep runs");
     for series in &chart(&sweep, "energy").series {
         let [point, lamp] = series.points[..] else { panic!("two points") };
         assert!(point.y.abs() < 1e-5, "{}: {}", series.name, point.y);
@@ -120,7 +117,7 @@ fn light_by_way_of_a_mirror() {
 /// By way of a glossy wall all of it is found, as long as the lobe is wide.
 #[test]
 fn light_by_way_of_a_lobe() {
-    let sweep = caustics::lobe(&bench(), &[1.0, 100.0], 1 << 15).expect("the sweep runs");
+    let sweep = glossy_caustics::sweep(&bench(), &[1.0, 100.0], 1 << 15).expect("the sweep runs");
     assert_all_found(&chart(&sweep, "energy").series.iter().collect::<Vec<_>>(), 1e-5, 0.1);
 }
 

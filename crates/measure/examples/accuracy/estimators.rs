@@ -7,7 +7,7 @@
 use crate::tables::Folder;
 use crate::{Effort, Texts};
 use luminaire::backend::Backend;
-use luminaire::film::{Batch, Tile};
+use luminaire::film::{Batch, Tile, relative_square};
 use luminaire::render::Tracer;
 use luminaire::scene::{
     self, AreaSampling, Directions, Estimator, Extinction, Integrator, LightSampling, PRESETS, Sampler, Scene,
@@ -54,7 +54,7 @@ fn picture(tracer: &mut dyn Tracer, samples: std::ops::Range<u32>) -> luminaire:
 
 fn relative_mse(found: &[[f64; 3]], expected: &[[f64; 3]]) -> f64 {
     let pairs = found.iter().flatten().zip(expected.iter().flatten());
-    pairs.map(|(a, b)| (a - b).powi(2) / (b * b + 0.01)).sum::<f64>() / (3 * found.len()) as f64
+    pairs.map(|(a, b)| relative_square(a - b, *b)).sum::<f64>() / (3 * found.len()) as f64
 }
 
 /// An estimator of the table.

@@ -1,4 +1,4 @@
-//! A measured number that a later run is compared with.
+//! A figure: a measured number, with its unit and spread, that a later run is compared with. It is no chart.
 
 use super::rounds::{Rounds, Spread};
 

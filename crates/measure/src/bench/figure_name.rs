@@ -1,4 +1,4 @@
-//! The names of figures.
+//! The names of figures, which are measured numbers and no charts: `section/what/quantity`.
 
 use std::fmt;
 

@@ -1,5 +1,5 @@
-//! How the cost of a sample and of a ray grows with luminaires, resolution and bounces, in the whole path tracer. How it grows with triangles
-//! and instances is in [`super::ray_section`].
+//! The section `growth`: how the cost of a sample and of a ray grows with luminaires, resolution and bounces, in the whole path tracer. How it
+//! grows with triangles and instances is in [`super::rays`].
 
 use super::definition::{Definition, Progress};
 use super::effort::Effort;

@@ -1,6 +1,6 @@
 //! Closed rooms of any number of triangles, or of instances: the same numbers give the same room.
 
-use crate::rays::Random;
+use crate::random::Random;
 use glam::{Affine3A, EulerRot, Quat, Vec3};
 use luminaire::scene::build::*;
 use luminaire::scene::{Mesh, Object, Scene, Triangle};

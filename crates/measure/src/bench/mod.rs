@@ -1,44 +1,36 @@
-//! The benchmark: error over time, and the cost of rays.
+//! The benchmark: error over time, and the cost of rays. A new chart is added to the [`Section`] it belongs to, a new section to [`SECTIONS`].
 //!
-//! Every part of it gives a [`Section`]: what was measured as numbers with their spread, and the charts and sentences made of them.
+//! Every part of it gives a [`Section`]: what was measured as numbers with their spread, which are called [`Figure`]s here, and the charts and
+//! sentences made of them. The folders `convergence` and `rays`, and the files `preparation` and `growth`, hold the section of their name.
 //! [`SECTIONS`] lists the parts, [`Report`] is a run of them, [`html`] and [`markdown`] make a page of it, and [`Baseline`] compares it with an
 //! earlier run.
 
 mod baseline;
-pub mod break_even;
-mod contenders;
-mod curve;
-mod curve_section;
+mod convergence;
 mod definition;
 mod effort;
 mod figure;
 pub mod figure_name;
 pub mod growth;
-pub mod intersectors;
 pub mod meshes;
 mod page;
-mod pareto;
 pub mod power_law;
 mod preparation;
-pub mod ray_kinds;
-pub mod ray_section;
+pub mod rays;
 mod record;
-mod reference;
 mod renders;
 mod report;
 pub mod rounds;
 mod scene;
 mod section;
 mod settings;
-mod trial;
 
 pub use baseline::{Baseline, Change, MARGIN, Verdict};
-pub use contenders::{STANDARD, check_estimator};
+pub use convergence::{Candidate, STANDARD, check_estimator, front};
 pub use definition::{Definition, Outcome, Progress};
 pub use effort::Effort;
 pub use figure::{Better, Figure};
 pub use page::{file_name, html, markdown};
-pub use pareto::{Candidate, front};
 pub use record::Machine;
 pub use report::Report;
 pub use scene::BenchScene;
@@ -50,7 +42,7 @@ use luminaire::Result;
 
 /// Every part, in the order of the page.
 pub const SECTIONS: &[Definition] =
-    &[curve_section::DEFINITION, preparation::DEFINITION, ray_section::DEFINITION, growth::DEFINITION];
+    &[convergence::DEFINITION, preparation::DEFINITION, rays::DEFINITION, growth::DEFINITION];
 
 /// The parts of these names, in the order of the page; all of them for no name.
 ///

@@ -1,4 +1,4 @@
-//! How fast something grows.
+//! A power law fitted to points: with which exponent a cost grows.
 
 use crate::chart::{Point, Series};
 

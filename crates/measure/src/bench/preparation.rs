@@ -1,4 +1,4 @@
-//! What comes before the first sample: loading a scene, building its structures, and the memory that they take.
+//! The section `preparation`: what comes before the first sample, which is loading a scene, building its structures, and the memory that they take.
 
 use super::definition::{Definition, Progress};
 use super::figure::{Better, Figure};

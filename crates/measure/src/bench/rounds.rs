@@ -1,4 +1,4 @@
-//! The same thing, measured several times.
+//! The values of a measurement that was repeated in rounds, with their median and spread.
 
 use crate::chart::Point;
 use crate::report::words::number;

@@ -1,4 +1,4 @@
-//! What a part of the benchmark found.
+//! A section: the part of the benchmark's page that holds its charts. A chart is added to the `charts` of the section it belongs to.
 
 use super::figure::Figure;
 use crate::chart::Chart;

@@ -1,4 +1,4 @@
-//! What is measured, and what is expected of it.
+//! A case of the closed forms: what is rendered or computed, and the true value it is compared with.
 
 use luminaire::scene::Scene;
 

@@ -3,7 +3,8 @@
 use crate::Workbench;
 use crate::chart::{Axis, Chart, Point, Series};
 use crate::intersect_f32::{Test, Triangles};
-use crate::rays::{Random, Ray, probe_hits, reference_hits, reference_leaves};
+use crate::random::Random;
+use crate::rays::{Ray, probe_hits, reference_hits, reference_leaves};
 use glam::{Affine3A, DVec3, Vec3};
 use luminaire::Result;
 use luminaire::backend::Backend;

@@ -1,26 +1,13 @@
-//! Bodies of glass that touch, or nearly.
+//! Glass in white light from everywhere, whose mean is known: what the sweeps over glass look at.
 
-use super::geometry::{COMPUTE_BVH, add, chart, decades, name_of};
-use super::judge::{geometric, up_to};
-use super::sweep::{Definition, Family, Findings, Sweep};
-use super::verdict::{Worse, stretch};
 use crate::Workbench;
-use crate::chart::{Axis, Point};
 use crate::statistics::Estimate;
-use glam::{Affine3A, Vec3};
+use glam::Vec3;
 use luminaire::Result;
 use luminaire::backend::Backend;
 use luminaire::film::{Batch, Tile};
-use luminaire::scene::build::{add as add_mesh, cube, empty, estimator, icosphere, matte, pinhole};
+use luminaire::scene::build::{estimator, matte, pinhole};
 use luminaire::scene::{Environment, Extinction, Material, Scene};
-
-/// The sweep.
-pub const DEFINITION: Definition = Definition {
-    name: "touching-glass",
-    family: Family::Geometry,
-    title: "Bodies of glass, 0.1 to 1e-8 of their size apart",
-    run,
-};
 
 /// Glass that absorbs nothing.
 pub(super) fn glass(eta: f64) -> Material {
@@ -58,88 +45,4 @@ pub(super) fn around_glass(
     let Estimate { mean, error } = Estimate::new(traced.sums.iter().map(|sum| sum.radiance[0]));
     let ended = traced.sums.iter().filter(|sum| sum.radiance[0] > 0.0).count() as f64 / traced.sums.len() as f64;
     Ok(AroundGlass { mean, error, ended, longest: traced.sums.iter().map(|sum| sum.rays.all).max().unwrap_or(0) })
-}
-
-fn run(bench: &Workbench) -> Result<Sweep> {
-    sweep(bench, &decades(-8, -1, bench), 16)
-}
-
-/// Two cubes of glass side by side, turned.
-fn side_by_side(gap: f64) -> Scene {
-    let mut scene = empty(32, 32);
-    let turned = Affine3A::from_rotation_x(0.3) * Affine3A::from_rotation_y(0.7);
-    let half = Affine3A::from_scale(Vec3::splat(0.5));
-    add_mesh(&mut scene, cube(), glass(1.5), turned * Affine3A::from_translation(Vec3::X * -0.5) * half);
-    let right = Affine3A::from_translation(Vec3::X * (0.5 + gap as f32));
-    add_mesh(&mut scene, cube(), glass(1.5), turned * right * half);
-    scene
-}
-
-/// A ball of water in a ball of glass.
-fn nested(gap: f64) -> Scene {
-    let mut scene = empty(32, 32);
-    let turned = Affine3A::from_rotation_x(0.3);
-    add_mesh(&mut scene, icosphere(2), glass(1.5), turned);
-    // Water, seen from the glass.
-    let inner = turned * Affine3A::from_scale(Vec3::splat((1.0 - gap) as f32));
-    add_mesh(&mut scene, icosphere(2), glass(1.33 / 1.5), inner);
-    scene
-}
-
-/// Builds a scene with a gap.
-type SceneOfGap = fn(f64) -> Scene;
-
-/// The sweep over some gaps with so many samples a pixel.
-///
-/// # Errors
-/// If a driver fails.
-pub fn sweep(bench: &Workbench, gaps: &[f64], samples: u32) -> Result<Sweep> {
-    let x = || Axis::log("gap in sizes of the bodies");
-    let mut charts = Vec::new();
-    let mut touching = Vec::new();
-    let scenes: [(&str, &str, SceneOfGap); 2] = [
-        ("side-by-side", "Two cubes of glass side by side in white light", side_by_side),
-        ("nested", "A ball of water in a ball of glass in white light", nested),
-    ];
-    for (name, words, scene) in scenes {
-        let mut chart = chart(name, &format!("{words}: off from white"), x(), "difference of the mean from 1");
-        for &gap in gaps {
-            for backend in bench.backends() {
-                let seen = around_glass(bench, &mut scene(gap), backend, 1000, samples, Vec3::new(0.5, 0.3, 3.0))?;
-                let y = (seen.mean - 1.0).abs();
-                add(&mut chart, name_of(backend), Point { x: gap, y, error: Some(seen.error) });
-            }
-        }
-        for backend in bench.backends() {
-            let seen = around_glass(bench, &mut scene(0.0), backend, 1000, samples, Vec3::new(0.5, 0.3, 3.0))?;
-            touching.push((words, name_of(backend), seen.mean));
-        }
-        charts.push(chart);
-    }
-    let verdicts = geometric(&[], &charts.iter().collect::<Vec<_>>(), Worse::Downwards);
-    let range = stretch(gaps.iter().copied(), Worse::Downwards, "of the size");
-    let summary = up_to(&verdicts, COMPUTE_BVH, |end| {
-        format!("Leave a gap of at least {end} of the size between bodies of glass.")
-    });
-    Ok(Sweep { charts, range, verdicts, summary, findings: findings(&touching) })
-}
-
-fn findings(touching: &[(&str, &str, f64)]) -> Findings {
-    let touching: String =
-        touching.iter().map(|(scene, method, mean)| format!("| {scene} | {method} | {mean:.4} |\n")).collect();
-    Findings {
-        starts: format!(
-            "With no gap at all, where a mean of 1 is right:\n\n| bodies | method | mean |\n|---|---|---|\n{touching}\nWith a gap:"
-        ),
-        how: "Of two surfaces in one place a ray meets one, leaves it by its rounding bound, and is past the other. It then takes itself to be outside of a body \
-             in which it is, and the factors of the squared index (2.25 for glass) no longer cancel: such a path brings too much light, or too little. In \
-             double precision the same happens at gaps of 1e-8 and less to corners that are given in single precision."
-            .into(),
-        mends: "The bound is about 1e-6 of the size, so that gaps of 1e-5 and more are safe. Coincident faces of glass are not resolved: luminaire has no \
-             priorities of nested media."
-            .into(),
-        sees: "Glass that touches glass, or liquid that touches its glass, too bright or too dark in patches. Leave a gap of 1e-4 of the size, \
-             or model the common face once, with the ratio of both indices."
-            .into(),
-    }
 }

@@ -1,4 +1,4 @@
-//! Charts become verdicts.
+//! Verdicts on methods, made from charts.
 
 use super::verdict::{Judgement, SURE, Verdict, WRONG_SHARE, Worse, place};
 use crate::chart::{Chart, Point, Series};

@@ -1,29 +1,18 @@
 //! The stability map: every method over the range in which it can fail, on every backend.
 
-mod albedo;
-pub mod caustics;
-pub mod distance;
-pub mod edges;
-pub mod eta;
-mod extinction;
-pub mod gaps;
 mod geometry;
-pub mod glass;
-pub mod glossy;
-pub mod instances;
+mod glass;
 mod judge;
-mod many;
-pub mod near_lamps;
+mod lamp;
+mod light;
+mod limits;
 mod page;
 mod rooms;
-mod samples;
-pub mod scale;
-mod series;
-pub mod slivers;
-mod spot;
 mod sweep;
+pub mod sweeps;
 mod trial;
 pub mod verdict;
+mod wall;
 
 pub use page::{Head, Outcome, page};
 pub use sweep::{Definition, Family, Findings, SUMMARY, Sweep};
@@ -33,23 +22,23 @@ use luminaire::Result;
 
 /// Every sweep, in the order of the map.
 pub const SWEEPS: &[Definition] = &[
-    distance::DEFINITION,
-    scale::DEFINITION,
-    edges::DEFINITION,
-    slivers::DEFINITION,
-    gaps::DEFINITION,
-    instances::DEFINITION,
-    eta::DEFINITION,
-    glass::DEFINITION,
-    glossy::DEFINITION,
-    near_lamps::DISTANCE,
-    near_lamps::TILT,
-    caustics::MIRROR,
-    caustics::LOBE,
-    albedo::DEFINITION,
-    extinction::DEFINITION,
-    samples::DEFINITION,
-    many::DEFINITION,
+    sweeps::distance::DEFINITION,
+    sweeps::scale::DEFINITION,
+    sweeps::edges::DEFINITION,
+    sweeps::slivers::DEFINITION,
+    sweeps::gaps::DEFINITION,
+    sweeps::instances::DEFINITION,
+    sweeps::eta::DEFINITION,
+    sweeps::touching_glass::DEFINITION,
+    sweeps::glossy::DEFINITION,
+    sweeps::luminaire::DEFINITION,
+    sweeps::edge_on::DEFINITION,
+    sweeps::caustics::DEFINITION,
+    sweeps::glossy_caustics::DEFINITION,
+    sweeps::albedo::DEFINITION,
+    sweeps::extinction::DEFINITION,
+    sweeps::samples::DEFINITION,
+    sweeps::many::DEFINITION,
 ];
 
 /// The sweeps of these names, in the order of the map; all of them for no name.

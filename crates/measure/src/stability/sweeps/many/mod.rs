@@ -1,0 +1,256 @@
+//! Very many luminaires, instances and bounces: what they cost, and what they do to the error.
+
+mod scenes;
+mod timing;
+
+use crate::Workbench;
+use crate::chart::{Axis, Chart, Point, Series};
+use crate::report::words::{count, share};
+use crate::stability::judge::{light, up_to};
+use crate::stability::limits::largest;
+use crate::stability::sweep::{Definition, Family, Findings, Sweep};
+use crate::stability::trial::Trial;
+use crate::stability::verdict::{Verdict, Worse, stretch};
+use luminaire::Result;
+use luminaire::backend::Backend;
+use luminaire::render::Tracer;
+use luminaire::scene::LightSampling;
+use scenes::{SIZE, city, crowd, film, long_paths};
+use timing::compare;
+
+/// The sweep over numbers of things.
+pub const DEFINITION: Definition = Definition {
+    name: "many",
+    family: Family::Light,
+    title: "luminaires, instances and bounces, 1 to 1e5 of each",
+    run,
+};
+
+struct Steps {
+    numbers: Vec<u32>,
+    /// Seconds of one timing, of which there are several for each number.
+    seconds: f64,
+    /// Samples a pixel from which the noise is estimated.
+    samples: u32,
+}
+
+/// The default, as a method, and what it is held against.
+const BOTH: &str = "both, weighted";
+const DIRECT: &str = "direct light alone";
+
+fn run(bench: &Workbench) -> Result<Sweep> {
+    let steps = match bench.long {
+        false => Steps { numbers: vec![1, 10, 100, 1000, 10_000, 100_000], seconds: 0.03, samples: 512 },
+        true => Steps {
+            numbers: (0..=20).map(|i| 10f64.powf(0.25 * f64::from(i)).round() as u32).collect(),
+            seconds: 0.15,
+            samples: 8192,
+        },
+    };
+    sweep(bench, &steps)
+}
+
+/// The series of one backend over the numbers.
+struct Lines {
+    time: Series,
+    bytes: Series,
+}
+
+fn lines(backend: Backend) -> Lines {
+    let empty = || Series { name: backend.to_string(), points: vec![] };
+    Lines { time: empty(), bytes: empty() }
+}
+
+fn sweep(bench: &Workbench, steps: &Steps) -> Result<Sweep> {
+    let chart = |name: &str, title: &str, x: &str, y: Axis| Chart {
+        name: name.into(),
+        title: title.into(),
+        x: Axis::log(x),
+        y,
+        series: vec![],
+    };
+    let ratio = || Axis::log("time a ray / that with one");
+    let mut light_time = chart("luminaires-time", "Time a ray under many lamps", "lamps", ratio());
+    let mut object_time = chart("instances-time", "Time a ray among many spheres", "instances", ratio());
+    let mut bounce_time = chart("bounces-time", "Time a ray on long paths", "bounces", ratio());
+    let mut memory =
+        chart("memory", "Memory of the device", "lamps or instances", Axis::log("bytes, without those of one"));
+    let mut noise = chart(
+        "noise",
+        "A street of lamps: noise of its direct light",
+        "lamps",
+        Axis::log("relative standard deviation of a sample"),
+    );
+    let mut drift = chart(
+        "bounces-error",
+        "A closed room whose paths have n bounces",
+        "bounces",
+        Axis::log("relative error of the mean"),
+    );
+
+    for backend in bench.backends() {
+        let one = |y: f64, n: u32| Point { x: f64::from(n), y, error: None };
+        let (mut lights, mut objects, mut bounces) = (lines(backend), lines(backend), lines(backend));
+        let series = |name: String| Series { name, points: vec![] };
+        let mut noises = [series(format!("{BOTH} ({backend})")), series(format!("{DIRECT} ({backend})"))];
+        let mut errors = series(backend.to_string());
+        let smallest = (city(1, LightSampling::Mis), crowd(1), long_paths(1).0);
+        let mut least: [Option<f64>; 2] = [None; 2];
+        for &n in &steps.numbers {
+            let scene = city(n, LightSampling::Mis);
+            let mut compared = compare(bench, backend, (&smallest.0, &scene), [3.0; 2], steps.seconds)?;
+            lights.time.points.push(one(compared.ratio, n));
+            let mut add_bytes = |bytes: Option<f64>, which: usize, line: &mut Series| {
+                if let Some(bytes) = bytes {
+                    let base = *least[which].get_or_insert(bytes);
+                    line.points.extend((n > 1).then(|| one(bytes - base, n)));
+                }
+            };
+            add_bytes(compared.bytes, 0, &mut lights.bytes);
+            let deviation = |tracer: &mut dyn Tracer| -> Result<Point> {
+                let trial = Trial::new(tracer, SIZE, steps.samples, 3.0)?;
+                Ok(one(trial.variance().sqrt() / trial.mean().mean, n))
+            };
+            noises[0].points.push(deviation(compared.tracer.as_mut())?);
+            let mut direct = bench.tracer(&city(n, LightSampling::Direct), backend)?;
+            noises[1].points.push(deviation(direct.as_mut())?);
+
+            let compared = compare(bench, backend, (&smallest.1, &crowd(n)), [3.0; 2], steps.seconds)?;
+            objects.time.points.push(one(compared.ratio, n));
+            add_bytes(compared.bytes, 1, &mut objects.bytes);
+
+            let (scene, truth) = long_paths(n);
+            let rays = [3.0, f64::from(n) + 2.0];
+            let mut compared = compare(bench, backend, (&smallest.2, &scene), rays, steps.seconds)?;
+            bounces.time.points.push(one(compared.ratio, n));
+            // The reference needs no more: without rounding all of its paths are the same.
+            let samples = if rays[1] > 1e4 { 1 } else { 4 };
+            let mean = Trial::new(compared.tracer.as_mut(), film(&scene), samples, rays[1])?.mean().mean;
+            errors.points.push(one((mean / truth - 1.0).abs(), n));
+        }
+        light_time.series.push(lights.time);
+        object_time.series.push(objects.time);
+        bounce_time.series.push(bounces.time);
+        if backend != Backend::Cpu {
+            lights.bytes.name = format!("lamps ({backend})");
+            objects.bytes.name = format!("instances ({backend})");
+            memory.series.extend([lights.bytes, objects.bytes]);
+        }
+        noise.series.extend(noises);
+        drift.series.push(errors);
+    }
+    let verdicts = verdicts(&noise, &drift);
+    let range = stretch(steps.numbers.iter().map(|n| f64::from(*n)), Worse::Upwards, "things");
+    let summary = up_to(&verdicts, BOTH, |end| {
+        format!("Nothing becomes wrong, and time grows gently; beyond {end} lamps of equal power noise is large.")
+    });
+    let findings = findings(steps, [&light_time, &object_time, &bounce_time, &memory, &noise, &drift]);
+    let mut charts = vec![light_time, object_time, bounce_time, memory, noise, drift];
+    charts.retain(|chart| !chart.series.is_empty());
+    Ok(Sweep { charts, range, verdicts, summary, findings })
+}
+
+/// Both ways to find the light of many lamps, the default first, which has long paths as well.
+fn verdicts(noise: &Chart, drift: &Chart) -> Vec<Verdict> {
+    let squared = |series: &Series| Series {
+        points: series.points.iter().map(|p| Point { y: p.y * p.y, ..*p }).collect(),
+        ..series.clone()
+    };
+    let share = |series: &Series| Series {
+        points: series.points.iter().map(|p| Point { y: 1.0 + p.y, ..*p }).collect(),
+        ..series.clone()
+    };
+    let drift: Vec<Series> = drift.series.iter().map(share).collect();
+    let verdict = |method: &str| {
+        let variances: Vec<_> = noise.series.iter().filter(|s| s.name.starts_with(method)).map(squared).collect();
+        let shares = drift.iter().filter(|_| method == BOTH).collect::<Vec<_>>();
+        light(method, &variances.iter().collect::<Vec<_>>(), &shares, Worse::Upwards)
+    };
+    [BOTH, DIRECT].map(verdict).into()
+}
+
+fn findings(steps: &Steps, [lights, objects, bounces, memory, noise, drift]: [&Chart; 6]) -> Findings {
+    let last = |series: &Series| series.points.last().map_or(f64::NAN, |p| p.y);
+    let most = count(f64::from(steps.numbers.last().copied().unwrap_or(0)));
+    // Without a GPU there is only the reference.
+    let of_last = noise.series.len() - 2;
+    let (both, direct) = (&noise.series[of_last], &noise.series[of_last + 1]);
+    // One lamp leaves no choice; the first number that does is what the others are held against.
+    let few = steps.numbers.get(1).copied().unwrap_or(1);
+    let first = |series: &Series| series.points.get(1).map_or(f64::NAN, |p| p.y);
+    let bytes = |what: &str, backend: &str| {
+        let name = format!("{what} ({backend})");
+        let line = memory.series.iter().find(|series| series.name == name);
+        line.map_or("–".into(), |s| format!("{:.0}", last(s) / f64::from(*steps.numbers.last().unwrap_or(&1))))
+    };
+    let row = |index: usize| {
+        let name = &drift.series[index].name;
+        let [lights, objects, bounces] = [lights, objects, bounces].map(|chart| last(&chart.series[index]));
+        let (lamp, instance) = (bytes("lamps", name), bytes("instances", name));
+        let error = share(last(&drift.series[index]));
+        format!("| {name} | {lights:.1} | {objects:.1} | {bounces:.1} | {lamp} | {instance} | {error} |\n")
+    };
+    let table: String = (0..drift.series.len()).map(row).collect();
+    Findings {
+        starts: format!(
+            "Noise: with direct light alone the deviation of a sample grows from {:.2} with {few} lamps to {:.1} with {most}; with both \
+             ways weighted from {:.2} to {:.1}. A ray takes, against one thing alone, and a thing takes in memory:\n\n\
+             | backend | {most} lamps: times | {most} instances | {most} bounces | bytes a lamp | bytes an instance | error of the mean at \
+             {most} bounces |\n|---|---|---|---|---|---|---|\n{table}\nThe noise of lamps, and the error of long paths:",
+            first(direct),
+            last(direct),
+            first(both),
+            last(both),
+        ),
+        how: format!(
+            "One lamp is chosen by its power, not by its distance: of {most} lamps a point on the floor is lit by a few, which are \
+             hardly ever chosen (so rarely at last that the measured deviation of direct light alone is itself too small). Trees make the time grow with the \
+             logarithm of the number, and then with what no longer fits the caches. Memory grows in proportion. Long paths multiply as many \
+             rounded numbers as they have bounces and add as many to a sum (at most {} off).",
+            share(drift.series.iter().map(largest).fold(0.0, f64::max)),
+        ),
+        mends: "Choosing among lamps costs the same for any number (alias table). A direction from the surface finds near lamps that \
+        the choice misses, and multiple importance \
+                sampling keeps the better of both. There is no choice by place (light tree) yet. What a device cannot hold is refused \
+                by name and size before the render."
+            .into(),
+        sees: format!(
+            "More noise with more lamps of equal power far apart: to look alike, {most} lamps need {:.0} times the samples of {few} \
+             ({:.0} times with `--light-sampling direct`). \
+             Time and memory grow gently; no picture becomes wrong.",
+            (last(both) / first(both)).powi(2),
+            (last(direct) / first(direct)).powi(2),
+        ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use luminaire::scene::Scene;
+
+    /// Many lamps do not change what is right, long paths lose next to nothing, and choosing both ways is never noisier.
+    #[test]
+    fn many_things_stay_right() {
+        let bench = Workbench::new(false).unwrap();
+        for backend in bench.backends() {
+            let mean = |scene: &Scene, samples: u32, rays: f64| {
+                let mut tracer = bench.tracer(scene, backend).unwrap();
+                Trial::new(tracer.as_mut(), film(scene), samples, rays).unwrap()
+            };
+            let lamps = [LightSampling::Mis, LightSampling::Direct].map(|way| mean(&city(100, way), 1024, 3.0));
+            let [both, direct] = [&lamps[0], &lamps[1]].map(Trial::mean);
+            assert!(both.error < 0.05 * both.mean && direct.error < 0.05 * both.mean, "{both:?} {direct:?}");
+            assert!((both.mean - direct.mean).abs() < 4.0 * both.error.hypot(direct.error), "{both:?} {direct:?}");
+            assert!(lamps[0].variance() < lamps[1].variance());
+            for n in [1, 1000] {
+                let (scene, truth) = long_paths(n);
+                let found = mean(&scene, 1, f64::from(n)).mean().mean;
+                assert!((found / truth - 1.0).abs() < 1e-5, "{backend}, {n} bounces: {found} instead of {truth}");
+            }
+            // Half of the white light, and half of that, by spheres that see little of each other.
+            let crowded = mean(&crowd(1000), 4, 3.0).mean().mean;
+            assert!((0.3..0.9).contains(&crowded), "{backend}: {crowded}");
+        }
+    }
+}
