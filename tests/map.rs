@@ -23,8 +23,8 @@ struct File {
     module: Module,
     /// Where its imports lead: full paths, without what tests import.
     imports: BTreeSet<Module>,
-    /// What it hands on under its own name: the name (`*` for all), and whence.
-    hands_on: Vec<(String, Module)>,
+    /// Names that it knows by `use`, and whence (`*` for all of a module). Others find those that are public, and its children all of them.
+    names: Vec<(String, Module)>,
 }
 
 /// Gathers the paths of a file that is not about tests.
@@ -33,7 +33,7 @@ struct Paths<'a> {
     /// Modules within the file, as deep as the visit is.
     inner: Vec<String>,
     imports: BTreeSet<Module>,
-    hands_on: Vec<(String, Module)>,
+    names: Vec<(String, Module)>,
 }
 
 impl Paths<'_> {
@@ -61,20 +61,25 @@ impl Paths<'_> {
     }
 
     fn import(&mut self, segments: &[String]) {
-        if segments.len() > 1 {
-            self.imports.insert(self.full(segments).unwrap_or_else(|| self.own(segments)));
+        let [first, rest @ ..] = segments else { return };
+        if rest.is_empty() {
+            return;
         }
+        // `module::function` after `use somewhere::module`.
+        let used = || self.names.iter().find(|(name, _)| name == first).map(|(_, whence)| [&whence[..], rest].concat());
+        let path = self.full(segments).or_else(used).unwrap_or_else(|| self.own(segments));
+        self.imports.insert(path);
     }
 
     fn use_tree(&mut self, before: &[String], tree: &syn::UseTree, handed_on: bool) {
         let with = |name: &syn::Ident| before.iter().cloned().chain([name.to_string()]).collect::<Vec<_>>();
         let mut leaf = |path: &[String], name: String| {
             let path = self.full(path).unwrap_or_else(|| self.own(path));
-            if handed_on {
-                self.hands_on.push((name, path));
-            } else {
-                self.imports.insert(path);
+            // What a folder's file hands on of its own folder is no import: it is the folder's face.
+            if !handed_on || !path.starts_with(self.module) {
+                self.imports.insert(path.clone());
             }
+            self.names.push((name, path));
         };
         match tree {
             syn::UseTree::Path(path) => self.use_tree(&with(&path.ident), &path.tree, handed_on),
@@ -128,6 +133,13 @@ impl<'ast> Visit<'ast> for Paths<'_> {
         visit::visit_macro(self, call);
     }
 
+    /// Nor what stands in an attribute.
+    fn visit_attribute(&mut self, attribute: &'ast syn::Attribute) {
+        if let syn::Meta::List(list) = &attribute.meta {
+            self.tokens(list.tokens.clone());
+        }
+    }
+
     fn visit_visibility(&mut self, _: &'ast syn::Visibility) {
         // `pub(in crate::x)` imports nothing.
     }
@@ -171,7 +183,7 @@ fn files(root: &Path) -> Vec<File> {
                 let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
                 if path.is_dir() {
                     folders.push((path, module.iter().cloned().chain([name]).collect()));
-                } else if path.extension().is_some_and(|ending| ending == "rs") && name != "tests" {
+                } else if path.extension().is_some_and(|ending| ending == "rs") && !is_of_tests(&path) {
                     let module = if ["mod", "lib", "main"].contains(&&*name) {
                         module.clone()
                     } else {
@@ -185,14 +197,25 @@ fn files(root: &Path) -> Vec<File> {
     files
 }
 
+/// A file `tests.rs` whose parent declares it for tests alone.
+fn is_of_tests(path: &Path) -> bool {
+    let declared = |parent: &str| {
+        let text = std::fs::read_to_string(path.with_file_name(parent)).unwrap_or_default();
+        text.contains("#[cfg(test)]\nmod tests;")
+    };
+    path.ends_with("tests.rs") && ["mod.rs", "lib.rs", "main.rs"].into_iter().any(declared)
+}
+
 fn read(root: &Path, path: &Path, module: Module) -> File {
     let text = std::fs::read_to_string(path).expect("a source file is text");
     let syntax = syn::parse_file(&text).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-    let mut paths = Paths { module: &module, inner: Vec::new(), imports: BTreeSet::new(), hands_on: Vec::new() };
-    paths.visit_file(&syntax);
-    let (imports, hands_on) = (paths.imports, paths.hands_on);
+    let mut paths = Paths { module: &module, inner: Vec::new(), imports: BTreeSet::new(), names: Vec::new() };
+    // First the names, which the rest may use.
+    syntax.items.iter().filter(|item| matches!(item, syn::Item::Use(_))).for_each(|item| paths.visit_item(item));
+    syntax.items.iter().filter(|item| !matches!(item, syn::Item::Use(_))).for_each(|item| paths.visit_item(item));
+    let (imports, names) = (paths.imports, paths.names);
     let path = path.strip_prefix(root).expect("below the root").to_string_lossy().replace('\\', "/");
-    File { path, module, imports, hands_on }
+    File { path, module, imports, names }
 }
 
 /// The workspace: who imports whom.
@@ -219,11 +242,11 @@ impl House {
             let whence: Module = from.iter().chain(rest).cloned().collect();
             if whence == path { Some(file) } else { self.holder(&whence, depth + 1) }
         };
-        let hands_on = &self.files[file].hands_on;
-        if let Some(named) = hands_on.iter().find(|(handed, _)| handed == name) {
+        let names = &self.files[file].names;
+        if let Some(named) = names.iter().find(|(known, _)| known == name) {
             return whence(named, &path[known + 1..]);
         }
-        let globs = hands_on.iter().filter(|(handed, _)| handed == "*");
+        let globs = names.iter().filter(|(known, whence)| known == "*" && self.of_module.contains_key(whence));
         globs.filter_map(|glob| whence(glob, &path[known..])).find(|found| *found != file).or(Some(file))
     }
 
@@ -252,7 +275,7 @@ fn rooms(root: &Path) -> Vec<Room> {
     let mut rooms = Vec::new();
     for line in text.lines().filter(|line| line.starts_with("| `src/") || line.starts_with("| `crates/")) {
         let cells: Vec<&str> = line.trim_matches('|').split('|').collect();
-        let [paths, _, stands_on] = cells[..] else { continue };
+        let [paths, _, stands_on] = cells[..] else { panic!("a row of the map has not three cells: {line}") };
         for path in quoted(paths) {
             let name = path.trim_end_matches(".rs").trim_end_matches('/').trim_end_matches("/src");
             let name = name.strip_prefix("src/").unwrap_or(name).to_owned();

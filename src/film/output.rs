@@ -89,6 +89,13 @@ mod tests {
         let path = folder.path().join("a.EXR");
         film().save(&path, 3.0).unwrap();
         assert_eq!(read(&path), film().to_linear());
+        // And by another reader.
+        let image = ::exr::prelude::read_first_rgba_layer_from_file(
+            &path,
+            |size, _| vec![[0.0f32; 3]; size.area()],
+            |pixels, at, (r, g, b, _): (f32, f32, f32, f32)| pixels[at.y() * 9 + at.x()] = [r, g, b],
+        );
+        assert_eq!(image.unwrap().layer_data.channel_data.pixels.into_flattened(), film().to_linear());
     }
 
     #[test]

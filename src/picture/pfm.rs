@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_odd_is_told() {
+    fn what_is_odd_is_an_error() {
         for (head, part) in [
             ("PF\n", "ends within its head"),
             ("PF\n2 2\n-1.0", "ends within its head"),

@@ -83,7 +83,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_picture_is_told() {
+    fn what_is_no_picture_is_an_error() {
         let folder = tempfile::tempdir().unwrap();
         let says = |content: &[u8], part: &str| {
             let path = folder.path().join("a.png");

@@ -1,6 +1,6 @@
 //! What the camera sees first; its twin is `shaders/aov.comp`.
 
-use super::tracer::Reference;
+use super::prepared_scene::Reference;
 use crate::film::AovSum;
 use crate::sampling::ray_salt;
 use glam::DVec3;

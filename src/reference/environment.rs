@@ -3,7 +3,7 @@
 //! The azimuth `phi` runs from -z towards +x, the polar angle `theta` from +y down:
 //! `direction = (sin theta sin phi, cos theta, -sin theta cos phi)`.
 
-use super::tracer::Reference;
+use super::prepared_scene::Reference;
 use crate::sampling::uniform;
 use crate::scene::{Environment, EnvironmentDistribution, EnvironmentImage};
 use glam::DVec3;

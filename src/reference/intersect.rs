@@ -7,8 +7,8 @@
 //! of those of others ([`crate::sampling::ray_salt`]).
 
 use super::hit::{Hit, texture_coordinates};
+use super::prepared_scene::Reference;
 use super::rounding::gamma;
-use super::tracer::Reference;
 use super::tree;
 use crate::sampling::{coverage, uniform};
 use glam::DVec3;

@@ -1,9 +1,9 @@
 //! Direct light: next-event estimation (slides "Lighting Functions", "Shadows & Attenuation", "Area Luminaires").
 
 use super::hit::{interpolate, texture_coordinates};
+use super::prepared_scene::Reference;
 use super::scatter::path_pdf;
 use super::surfel::{Surfel, offset_ray_origin, position_error};
-use super::tracer::Reference;
 use super::warp::{solid_angle, spherical_triangle, uniform_triangle};
 use crate::film::Rays;
 use crate::sampling::uniform;

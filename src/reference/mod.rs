@@ -23,6 +23,7 @@ mod instance;
 pub mod intersect;
 pub mod luminaire;
 pub mod path;
+mod prepared_scene;
 mod rounding;
 pub mod scatter;
 pub mod sensor;
@@ -32,4 +33,4 @@ mod tracer;
 mod tree;
 pub mod warp;
 
-pub use tracer::Reference;
+pub use prepared_scene::Reference;

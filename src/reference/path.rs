@@ -2,8 +2,8 @@
 
 use super::hit::Hit;
 use super::luminaire::emission_weight;
+use super::prepared_scene::Reference;
 use super::scatter::{MAX_SURVIVAL, SURE_THROUGHPUT, scatter, survival};
-use super::tracer::Reference;
 use crate::film::Rays;
 use crate::sampling::{light_block, ray_salt, scatter_block, uniform};
 use crate::scene::{Extinction, Integrator, LightSampling};

@@ -1,6 +1,6 @@
 //! The camera (slide "Sensor Modelling"): pixel filter, perspective or parallel projection, pinhole or thin lens.
 
-use super::tracer::Reference;
+use super::prepared_scene::Reference;
 use super::warp::{concentric_disk, uniform_triangle};
 use crate::sampling::{SENSOR_BLOCK, uniform};
 use crate::scene::{Lens, Projection};

@@ -1,8 +1,8 @@
 //! The surface element: everything that shading needs to know about a point on a surface.
 
 use super::hit::{Hit, interpolate, texture_coordinates};
+use super::prepared_scene::Reference;
 use super::rounding::gamma;
-use super::tracer::Reference;
 use glam::{DVec2, DVec3, Vec3};
 
 /// A surface element, seen from the direction `wo` (slide "Surface Element Class"); textures are already in its numbers.

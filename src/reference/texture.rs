@@ -1,6 +1,6 @@
 //! Images on surfaces: what a material's numbers are at a point.
 
-use super::tracer::Reference;
+use super::prepared_scene::Reference;
 use crate::scene::{Material, Texture};
 use glam::{DVec2, DVec4};
 

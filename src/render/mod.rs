@@ -294,6 +294,21 @@ mod tests {
     }
 
     #[test]
+    fn a_step_that_failed_is_made_up_for() {
+        let whole = run(&mut Fake::new(37, 500, 1.0), (37, 23), 9).film;
+        let mut fake = Fake { fail_at: Some(3), ..Fake::new(37, 500, 1.0) };
+        let (mut run, mut budget) = (Run::new(Rendered::nothing((37, 23), 0).unwrap(), 9), Budget::new(Pace::OfTracer));
+        let mut failures = 0;
+        while !run.is_done() {
+            if run.step(&mut fake, &mut budget).is_err() {
+                failures += 1;
+                fake.fail_at = None;
+            }
+        }
+        assert_eq!((failures, run.into_rendered().film == whole), (1, true));
+    }
+
+    #[test]
     fn a_failure_keeps_what_was_done() {
         let mut fake = Fake { fail_at: Some(1), ..Fake::new(64, 2048, 1.0) };
         let rendered = run(&mut fake, (64, 64), 4);

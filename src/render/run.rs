@@ -16,6 +16,8 @@ const ESTIMATE_SHARE: f64 = 20.0;
 #[derive(Debug)]
 pub struct Run {
     rendered: Rendered,
+    /// The number of the sample before which to end.
+    end: u32,
     schedule: Schedule,
     /// The seconds of the progress at which the error is estimated again.
     next_estimate: f64,
@@ -26,7 +28,7 @@ impl Run {
     pub fn new(rendered: Rendered, end: u32) -> Self {
         let schedule = Schedule::of(&rendered.film, end);
         let next_estimate = rendered.progress.seconds + ESTIMATE_SECONDS;
-        Run { rendered, schedule, next_estimate }
+        Run { rendered, end, schedule, next_estimate }
     }
 
     /// Whether every pixel has the samples it was to get.
@@ -37,11 +39,18 @@ impl Run {
     /// Traces one batch of at most `budget`, adds it and the time that it took, and adapts the budget. Does nothing if all is done.
     ///
     /// # Errors
-    /// If the tracer fails; then the batch is missing, and the run cannot go on.
+    /// If the tracer fails; nothing was added then, and the next step begins with the same pixels again.
     pub fn step<T: Tracer + ?Sized>(&mut self, tracer: &mut T, budget: &mut Budget) -> Result<()> {
         let Some(batch) = self.schedule.next(budget.samples(), tracer.max_sums()) else { return Ok(()) };
         let start = Instant::now();
-        let traced = tracer.trace(&batch)?;
+        let traced = match tracer.trace(&batch) {
+            Ok(traced) => traced,
+            Err(error) => {
+                // What is left follows from the film, which has nothing of this batch.
+                self.schedule = Schedule::of(&self.rendered.film, self.end);
+                return Err(error);
+            }
+        };
         let seconds = start.elapsed().as_secs_f64();
         budget.adapt(samples_of(&batch), seconds, traced.device_seconds, tracer.batch_seconds());
         self.rendered.add(&batch, &traced);

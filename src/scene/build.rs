@@ -1,6 +1,9 @@
 //! Scenes built in code: for tests, measurements and programs that have no scene file.
 
-use super::*;
+use super::{
+    Estimator, FilmSettings, Filter, Integrator, Luminaire, Material, Mesh, Object, Projection, RenderSettings,
+    Sampler, Scene, Sensor, Triangle,
+};
 use glam::{Affine3A, Mat3, Vec3};
 use std::collections::HashMap;
 

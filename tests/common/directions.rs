@@ -105,7 +105,7 @@ pub fn girard([a, b, c]: [DVec3; 3]) -> f64 {
     angle(a, b, c) + angle(b, c, a) + angle(c, a, b) - PI
 }
 
-/// Girard's formula, or for triangles that are nearly flat, which it cannot tell from nothing, the area.
+/// Girard's formula, or for triangles that are nearly flat, which are nothing to it, the area.
 fn girard_or_flat([a, b, c]: [DVec3; 3]) -> f64 {
     let flat = 0.5 * (b - a).cross(c - a).length();
     if flat < 1e-5 { flat } else { girard([a, b, c]) }

@@ -126,9 +126,9 @@ fn a_run_and_its_baselines() {
         let output = bench(path, &[&words[..], &of_scenes, &["--out", "second", "--baseline", "other.json"]].concat());
         let said = said(&output);
         assert_eq!(output.status.code(), Some(code), "{said}");
-        let told =
+        let named =
             |line: &str| line.trim().starts_with(part) && line.contains(" convergence/room/cpu/default/1-spp/relmse ");
-        assert!(said.lines().any(told), "{said}");
+        assert!(said.lines().any(named), "{said}");
         assert!(said.contains("was another device"), "{said}");
         assert_eq!(said.contains("error: "), code == 1, "{said}");
     }

@@ -1,0 +1,55 @@
+//! The reference tracer: a scene, and what is made of it before the first ray.
+
+use super::instance::Instance;
+use super::tree::Trees;
+use crate::scene::{FilmSettings, LuminaireTable, Scene, widen};
+use glam::DVec3;
+
+/// The reference tracer with its scene; seed, film size and integrator are the scene's own.
+pub struct Reference {
+    pub(super) scene: Scene,
+    pub(super) instances: Vec<Instance>,
+    /// None: every triangle is tested.
+    pub(super) trees: Option<Trees>,
+    pub(super) luminaires: LuminaireTable,
+    /// Inverse of the pixel filter's distribution; empty for the pixel's own square.
+    pub(super) filter: Vec<f32>,
+}
+
+impl Reference {
+    /// A tracer that finds triangles through a tree of boxes. The caller sees to it that the estimator ends
+    /// ([`crate::scene::Estimator::ends`]).
+    pub fn new(scene: &Scene) -> Self {
+        let mut reference = Self::brute_force(scene);
+        reference.trees = Some(Trees::new(scene, &reference.instances));
+        reference
+    }
+
+    /// A tracer that tests every triangle for every ray: the oracle for [`Reference::new`], too simple to be wrong.
+    pub fn brute_force(scene: &Scene) -> Self {
+        let instances = scene
+            .objects
+            .iter()
+            .map(|object| {
+                let to_world = widen(object.object_to_world);
+                let to_object = to_world.inverse();
+                Instance { to_world, to_object, normal_to_world: to_object.matrix3.transpose() }
+            })
+            .collect();
+        let (luminaires, filter) = (LuminaireTable::new(scene), filter_table(&scene.film));
+        Reference { scene: scene.clone(), instances, trees: None, luminaires, filter }
+    }
+
+    /// World-space corners of a triangle of an object.
+    pub(super) fn corners(&self, object: u32, triangle: u32) -> [DVec3; 3] {
+        let mesh = &self.scene.meshes[self.scene.objects[object as usize].mesh as usize];
+        let to_world = &self.instances[object as usize].to_world;
+        let vertices = mesh.triangles[triangle as usize].vertices;
+        vertices.map(|v| to_world.transform_point3(mesh.positions[v as usize].as_dvec3()))
+    }
+}
+
+/// What [`Reference::filter`] holds.
+pub(super) fn filter_table(film: &FilmSettings) -> Vec<f32> {
+    if film.is_pixel_square() { vec![] } else { film.filter.inverse_cdf(film.filter_radius) }
+}
