@@ -1,5 +1,4 @@
-//! The map of CONTRIBUTING.md, held against the code's own imports: an arrow that the map does not have fails, one that the code does not
-//! have fails, and so does a circle of files.
+//! Who imports whom: the arrows of the house, read from its sources.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -17,9 +16,9 @@ const PACKAGES: [(&str, &str); 4] = [
 type Module = Vec<String>;
 
 /// One source file.
-struct File {
+pub struct File {
     /// From the root of the repository.
-    path: String,
+    pub path: String,
     module: Module,
     /// Where its imports lead: full paths, without what tests import.
     imports: BTreeSet<Module>,
@@ -219,13 +218,13 @@ fn read(root: &Path, path: &Path, module: Module) -> File {
 }
 
 /// The workspace: who imports whom.
-struct House {
-    files: Vec<File>,
+pub struct House {
+    pub files: Vec<File>,
     of_module: BTreeMap<Module, usize>,
 }
 
 impl House {
-    fn new(root: &Path) -> Self {
+    pub fn new(root: &Path) -> Self {
         let files = files(root);
         let of_module = files.iter().enumerate().map(|(index, file)| (file.module.clone(), index)).collect();
         House { files, of_module }
@@ -251,155 +250,11 @@ impl House {
     }
 
     /// For every file, the files that it imports from.
-    fn arrows(&self) -> Vec<BTreeSet<usize>> {
+    pub fn arrows(&self) -> Vec<BTreeSet<usize>> {
         let arrow = |(index, file): (usize, &File)| {
             let to = file.imports.iter().filter_map(|path| self.holder(path, 0));
             to.filter(|to| *to != index).collect()
         };
         self.files.iter().enumerate().map(arrow).collect()
     }
-}
-
-/// A row of the map: what lies at a path, and on what it stands.
-struct Room {
-    path: String,
-    /// As other rows name it: `scene` for `src/scene/`, `crates/view` for `crates/view/src/`, `error` for `src/error.rs`.
-    name: String,
-    stands_on: BTreeSet<String>,
-}
-
-/// The rooms of the table in CONTRIBUTING.md: rows of `| path | what | stands on |`, paths in backticks.
-fn rooms(root: &Path) -> Vec<Room> {
-    let text = std::fs::read_to_string(root.join("CONTRIBUTING.md")).expect("the map");
-    let quoted = |cell: &str| -> Vec<String> { cell.split('`').skip(1).step_by(2).map(str::to_owned).collect() };
-    let mut rooms = Vec::new();
-    for line in text.lines().filter(|line| line.starts_with("| `src/") || line.starts_with("| `crates/")) {
-        let cells: Vec<&str> = line.trim_matches('|').split('|').collect();
-        let [paths, _, stands_on] = cells[..] else { panic!("a row of the map has not three cells: {line}") };
-        for path in quoted(paths) {
-            let name = path.trim_end_matches(".rs").trim_end_matches('/').trim_end_matches("/src");
-            let name = name.strip_prefix("src/").unwrap_or(name).to_owned();
-            rooms.push(Room { path, name, stands_on: quoted(stands_on).into_iter().collect() });
-        }
-    }
-    assert!(rooms.len() > 8, "the table of CONTRIBUTING.md has only {} rooms", rooms.len());
-    rooms
-}
-
-/// Rooms that share the longest beginning with a file's path.
-fn room_of<'a>(rooms: &'a [Room], file: &str) -> Option<&'a Room> {
-    rooms.iter().filter(|room| file.starts_with(&room.path)).max_by_key(|room| room.path.len())
-}
-
-fn root() -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
-}
-
-#[test]
-fn the_map_has_every_arrow_and_no_other() {
-    let (house, rooms) = (House::new(&root()), rooms(&root()));
-    let mut wrong = Vec::new();
-    let mut used: BTreeSet<(&str, &str)> = BTreeSet::new();
-    for (file, arrows) in house.files.iter().zip(house.arrows()) {
-        let Some(room) = room_of(&rooms, &file.path) else {
-            wrong.push(format!("{} lies in no room of the map", file.path));
-            continue;
-        };
-        for to in arrows.into_iter().map(|to| &house.files[to].path) {
-            let Some(other) = room_of(&rooms, to).filter(|other| other.path != room.path) else { continue };
-            // `src` is the whole library.
-            let named =
-                room.stands_on.iter().find(|on| **on == other.name || *on == "src" && other.path.starts_with("src/"));
-            match named {
-                Some(named) => drop(used.insert((&room.path, named))),
-                None => wrong.push(format!(
-                    "{} imports from {to}, but {} does not stand on {}",
-                    file.path, room.name, other.name
-                )),
-            }
-        }
-    }
-    for room in &rooms {
-        assert!(root().join(&room.path).exists(), "the map names {}, which is not there", room.path);
-        let unused = room.stands_on.iter().filter(|on| !used.contains(&(room.path.as_str(), on.as_str())));
-        wrong.extend(
-            unused.map(|on| format!("the map says that {} stands on {on}, but nothing there imports it", room.path)),
-        );
-    }
-    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-}
-
-#[test]
-fn no_files_import_each_other() {
-    let house = House::new(&root());
-    let arrows = house.arrows();
-    let reaches = |from: usize| {
-        let mut seen = BTreeSet::new();
-        let mut open: Vec<usize> = arrows[from].iter().copied().collect();
-        while let Some(next) = open.pop() {
-            if seen.insert(next) {
-                open.extend(&arrows[next]);
-            }
-        }
-        seen
-    };
-    let reached: Vec<BTreeSet<usize>> = (0..arrows.len()).map(reaches).collect();
-    let mut circles = Vec::new();
-    for (from, to) in arrows.iter().enumerate().flat_map(|(from, to)| to.iter().map(move |to| (from, *to))) {
-        if reached[to].contains(&from) {
-            circles.push(format!("{} -> {}", house.files[from].path, house.files[to].path));
-        }
-    }
-    assert!(circles.is_empty(), "these imports lie on circles:\n{}", circles.join("\n"));
-}
-
-/// Pages name files; those that begin at the root of the repository have to be there.
-#[test]
-fn files_that_pages_name_are_there() {
-    let root = root();
-    let pages = std::fs::read_dir(root.join("docs")).expect("docs").map(|entry| entry.expect("an entry").path());
-    let pages = pages.filter(|path| path.extension().is_some_and(|ending| ending == "md"));
-    let beside = ["README.md", "CONTRIBUTING.md", "scenes/README.md", "src/lib.rs"].map(|name| root.join(name));
-    let mut missing = Vec::new();
-    let mut named = 0;
-    for page in pages.chain(beside) {
-        let text = std::fs::read_to_string(&page).expect("a page is text");
-        // Code in blocks is somebody else's.
-        for quoted in text.split("```").step_by(2).flat_map(|prose| prose.split('`').skip(1).step_by(2)) {
-            let first = quoted.split('/').next().unwrap_or_default();
-            let is_ours = ["src", "crates", "shaders", "tests", "examples", "scenes", "scripts", "docs", "fuzz", ".ci"]
-                .contains(&first);
-            // What the fuzzer finds is not kept.
-            let kept = !quoted.starts_with("fuzz/artifacts");
-            if !is_ours || !kept || quoted == first || quoted.contains(['*', ' ', '<', '{']) {
-                continue;
-            }
-            named += 1;
-            // `tests/gpu` and `tests/sampling` may mean a folder or a file of Rust.
-            if !root.join(quoted).exists() && !root.join(format!("{quoted}.rs")).exists() {
-                missing.push(format!("{}: {quoted}", page.strip_prefix(&root).unwrap_or(&page).display()));
-            }
-        }
-    }
-    assert!(named > 50, "only {named} files are named");
-    assert!(missing.is_empty(), "these are not there:\n{}", missing.join("\n"));
-}
-
-/// The front page's table names tests as `gpu::features` or `reference::light::name`: each has to be there.
-#[test]
-fn tests_that_the_front_page_names_are_there() {
-    let page = std::fs::read_to_string(root().join("src/lib.rs")).expect("the front page");
-    let mut named = 0;
-    // Number, slide, functions, tests, scene.
-    let cells = page.lines().filter(|line| line.starts_with("//! | ")).filter_map(|line| line.split(" | ").nth(4));
-    for quoted in cells.flat_map(|cell| cell.split('`').skip(1).step_by(2)) {
-        let parts: Vec<&str> = quoted.split("::").collect();
-        let (["gpu" | "reference", file] | ["gpu" | "reference", file, _]) = parts[..] else { continue };
-        named += 1;
-        let path = root().join("tests").join(parts[0]).join(file).with_extension("rs");
-        let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("`{quoted}`: {}: {e}", path.display()));
-        let function = parts.get(2).map(|name| format!("fn {name}("));
-        assert!(function.is_none_or(|function| text.contains(&function)), "`{quoted}` is not there");
-    }
-    assert!(named > 15, "only {named} tests are named");
 }
