@@ -142,13 +142,11 @@ pub(super) fn up_to(verdicts: &[Verdict], method: &str, advice: impl Fn(String) 
 
 /// Advice that holds where the method of this name, or else the first one, is safe all the way.
 pub(super) fn everywhere(verdicts: &[Verdict], method: &str, advice: &str) -> String {
+    let ranges = verdict_on(verdicts, method).map_or(&[][..], |verdict| &verdict.ranges);
+    let way = if matches!(ranges, [first, .., last] if first.from > last.to) { "down" } else { "up" };
     match verdict_on(verdicts, method) {
         Some(verdict) if verdict.is_safe() => advice.into(),
-        Some(Verdict { ranges, .. }) => {
-            let upwards = matches!(&ranges[..], [first, .., last] if first.from < last.to);
-            up_to(verdicts, method, |end| format!("Safe only {} to {end}.", if upwards { "up" } else { "down" }))
-        }
-        None => up_to(verdicts, method, |end| end),
+        _ => up_to(verdicts, method, |end| format!("Safe only {way} to {end}.")),
     }
 }
 
