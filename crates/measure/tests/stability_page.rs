@@ -47,6 +47,9 @@ fn a_page_has_every_sweep_also_the_failed() {
     for part in [
         "`luminaire stability`",
         "a device, a driver",
+        "5 % of noise take more than 40000 samples a pixel",
+        "| ? not known | – | no bias is proved, but one of 10 % of the light would not be seen in these samples |",
+        "Two errors are charted that no verdict goes by",
         "| sweep | range | cpu | compute BVH | ray query | in one sentence |\n|---|---|---|---|---|---|\n",
         "| [good](#good) | 1 to 2 sizes | ● at 1, ✖ beyond | ● at 1, ✖ beyond | – | Stay at 1. |",
         "| [bad](#bad) |  |  |  |  | the sweep failed: the device is lost |",

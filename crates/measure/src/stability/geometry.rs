@@ -5,6 +5,7 @@ use crate::chart::{Axis, Chart, Point, Series};
 use crate::intersect_f32::{Test, Triangles};
 use crate::random::Random;
 use crate::rays::{Ray, probe_hits, reference_hits, reference_leaves};
+use crate::report::words::number;
 use glam::{Affine3A, DVec3, Vec3};
 use luminaire::Result;
 use luminaire::backend::Backend;
@@ -221,20 +222,6 @@ pub(super) fn decades(first: i32, last: i32, bench: &Workbench) -> Vec<f64> {
     let steps = if bench.long { 3 } else { 1 };
     let exponents = first.min(last) * steps..=first.max(last) * steps;
     exponents.map(|e| 10f64.powf(f64::from(e) / f64::from(steps))).collect()
-}
-
-/// A number in words: three digits, a power of ten where it is large or small.
-pub(super) fn number(x: f64) -> String {
-    if x == 0.0 {
-        "0".into()
-    } else if (0.01..1e4).contains(&x.abs()) {
-        let digits = (2 - x.abs().log10().floor() as i32).max(0) as usize;
-        let text = format!("{x:.digits$}");
-        if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
-    } else {
-        let text = format!("{x:.1e}");
-        text.replace(".0e", "e")
-    }
 }
 
 /// The chart of a name.

@@ -1,7 +1,10 @@
 //! What the sweeps over light have in common: many samples of one spot, and integrals to hold them against.
 
+use super::judge::certain_bias;
+use super::verdict::SURE;
 use crate::Workbench;
 use crate::chart::{Axis, Chart, Point, Series};
+use crate::report::words::share;
 use crate::statistics::Estimate;
 use glam::{DVec3, Vec3};
 use luminaire::Result;
@@ -143,20 +146,18 @@ pub(super) fn chart(name: &str, title: &str, x: &str, y: Axis, series: Vec<Serie
     Chart { name: name.into(), title: title.into(), x: Axis::log(x), y, series }
 }
 
-/// A share in words: `1.2 %`, and below a thousandth `3.1e-6`.
-pub(super) fn percent(value: f64) -> String {
-    match value.abs() {
-        0.0 => "0".into(),
-        size if size < 1e-3 => format!("{value:.0e}"),
-        size if size < 0.1 => format!("{:.1} %", 100.0 * value),
-        _ => format!("{:.0} %", 100.0 * value),
-    }
+/// Farthest that a series of shares is certainly from 1 where `x` is in a range; 0 where that may be chance.
+pub(super) fn off(series: &Series, range: std::ops::RangeInclusive<f64>) -> f64 {
+    let beyond = |p: &Point| certain_bias(p.y, p.error.unwrap_or(0.0));
+    series.points.iter().filter(|p| range.contains(&p.x)).map(beyond).fold(0.0, f64::max)
 }
 
-/// Farthest that a series of shares is from 1 where `x` is in a range, beyond three standard errors; 0 within them.
-pub(super) fn off(series: &Series, range: std::ops::RangeInclusive<f64>) -> f64 {
-    let beyond = |p: &Point| ((p.y - 1.0).abs() - 3.0 * p.error.unwrap_or(0.0)).max(0.0);
-    series.points.iter().filter(|p| range.contains(&p.x)).map(beyond).fold(0.0, f64::max)
+/// How far means are [`off`], in words that follow "the light is".
+pub(super) fn within(off: f64) -> String {
+    match off {
+        0.0 => format!("within {SURE} standard errors"),
+        _ => format!("off by {} more than {SURE} standard errors", share(off)),
+    }
 }
 
 /// Points and weights of an integral from 0 to 1 over what peaks at `peak`, about one over `sharpness` wide: the midpoint rule after

@@ -2,10 +2,10 @@
 
 use super::geometry::{COMPUTE_BVH, RAY_QUERY, REFERENCE};
 use super::sweep::{Definition, Family, Sweep};
-use super::verdict::{Judgement, NOISY_VARIANCE, SURE, Verdict, WRONG_RAYS, WRONG_SHARE};
+use super::verdict::{EVEN, Judgement, KNOWN, NOISY_VARIANCE, SURE, Verdict, WRONG_RAYS, WRONG_SHARE};
 use crate::report::markdown::image;
 use crate::report::table::Table;
-use crate::report::words::{capital, one_line};
+use crate::report::words::{capital, count, one_line};
 use luminaire::Result;
 
 /// What stands above the sweeps.
@@ -27,18 +27,13 @@ pub type Outcome = (Definition, Result<Sweep>);
 /// The page: a table for each family of sweeps with a line for each sweep, then each sweep with its verdicts, charts and four answers. A sweep that
 /// failed says why.
 pub fn page(head: &Head, outcomes: &[Outcome]) -> String {
-    let [safe, noisy, wrong] = [Judgement::Safe, Judgement::Noisy, Judgement::Wrong].map(Judgement::symbol);
+    let [safe, noisy] = [Judgement::Safe, Judgement::Noisy].map(Judgement::symbol);
     let mut text = format!(
         "# Where methods fail\n\n\
          Every method is driven over the range in which it can fail, on every backend. This page says from where on it fails, and what to do about it.\n\n\
-         | | geometry: rays aimed at the hardest places | light |\n|---|---|---|\n\
-         | {safe} safe | none goes wrong | right, and even |\n\
-         | {noisy} noisy | some go wrong: single pixels, dotted edges | right in the mean, but bright dots: 5 % of noise take more than 40 000 samples a pixel |\n\
-         | {wrong} wrong | more than {:.0} % go wrong, or hits are more than {:.1} % of the size off | more than {:.1} % of the light is missing or too much, however many samples |\n\n\
+         {}\n\
          `{safe} to 1e5, {noisy} beyond`: safe at every place that was tried up to 1e5, noisy at the next one. A – was not tried, or is what the others are held against.\n\n",
-        100.0 * WRONG_RAYS / 1e6,
-        100.0 * WRONG_SHARE,
-        100.0 * WRONG_SHARE,
+        legend().markdown()
     );
     for family in [Family::Geometry, Family::Light] {
         text += &summary(family, outcomes);
@@ -47,12 +42,15 @@ pub fn page(head: &Head, outcomes: &[Outcome]) -> String {
         "## How it was measured\n\n\
          - Command: `{}`\n- Device: {}\n- Ran on: {}\n- All sentences, tables and charts are of this one run. Bars are two standard errors each way. Ratios of times are of things that ran side by side.\n\
          - Light is called noisy where the variance of a sample is more than {NOISY_VARIANCE} times the squared mean, or less than half of the light was found; and wrong where its mean is off by more than \
-         {:.1} % beyond {SURE} standard errors.\n\
+         {:.1} % beyond {SURE} standard errors. It is not known where {SURE} standard errors are more than {:.0} % of the light and no such bias is proved.\n\
+         - Two errors are charted that no verdict goes by: that of a hit along its ray in edges, because a ray at a small angle to the surface is off along the surface, where nothing is seen \
+         of it; and how far hits slide along slivers, because that is seen in textures alone.\n\
          - The rays of the geometric sweeps are aimed at edges, corners and rims, which next to no ray of a picture meets. What failed once counts as failing further on.\n",
         head.command,
         head.device,
         head.backends,
-        100.0 * WRONG_SHARE
+        100.0 * WRONG_SHARE,
+        100.0 * KNOWN
     );
     for (sweep, outcome) in outcomes {
         text += &format!("\n## <a id=\"{}\"></a>{}\n\n", sweep.name, capital(sweep.title));
@@ -62,6 +60,45 @@ pub fn page(head: &Head, outcomes: &[Outcome]) -> String {
         }
     }
     text
+}
+
+/// What the symbols say.
+fn legend() -> Table {
+    let row = |judgement: Judgement, name: &str, geometry: String, light: String| {
+        vec![format!("{} {name}", judgement.symbol()), geometry, light]
+    };
+    let samples = count(NOISY_VARIANCE / EVEN.powi(2));
+    Table::new(["", "geometry: rays aimed at the hardest places", "light"]).with_rows([
+        row(Judgement::Safe, "safe", "none goes wrong".into(), "right, and even".into()),
+        row(
+            Judgement::Noisy,
+            "noisy",
+            "some go wrong: single pixels, dotted edges".into(),
+            format!(
+                "right in the mean, but bright dots: {:.0} % of noise take more than {samples} samples a pixel",
+                100.0 * EVEN
+            ),
+        ),
+        row(
+            Judgement::Unknown,
+            "not known",
+            "–".into(),
+            format!(
+                "no bias is proved, but one of {:.0} % of the light would not be seen in these samples",
+                100.0 * KNOWN
+            ),
+        ),
+        row(
+            Judgement::Wrong,
+            "wrong",
+            format!(
+                "more than {:.0} % go wrong, or hits are more than {:.1} % of the size off",
+                100.0 * WRONG_RAYS / 1e6,
+                100.0 * WRONG_SHARE
+            ),
+            format!("more than {:.1} % of the light is missing or too much, however many samples", 100.0 * WRONG_SHARE),
+        ),
+    ])
 }
 
 /// The table of a family, without one if none of its sweeps is there.

@@ -1,14 +1,18 @@
-//! What a sweep says of a method: safe, noisy or wrong, and from where to where.
+//! What a sweep says of a method: safe, noisy, not known or wrong, and from where to where.
 
 /// Rays a million that may go wrong before it is more than single pixels. The rays of the sweeps are aimed at edges, corners and rims, where next
 /// to none of a picture's go; if a tenth of even these goes wrong, whole surfaces look wrong.
 pub const WRONG_RAYS: f64 = 1e5;
 /// How far off something may be, as a share of what it is held against. Of a body's size: a pixel of a picture in which the body is a thousand
-/// pixels wide. Of light: a quarter of a step of an 8-bit picture at full brightness.
+/// pixels wide. Of light: a ninth of a step of an 8-bit sRGB picture at full brightness.
 pub const WRONG_SHARE: f64 = 1e-3;
-/// Variance of a sample over the squared mean from which on a method is noisy. A sample is then ten times the mean off, and 5 % of noise take a
-/// pixel 40 000 samples.
+/// Variance of a sample over the squared mean from which on a method is noisy. A sample is then ten times the mean off.
 pub const NOISY_VARIANCE: f64 = 100.0;
+/// Noise of a pixel, over its mean, that is counted as even: what it takes in samples is the variance over its square.
+pub const EVEN: f64 = 0.05;
+/// How well a mean has to be known before a method is called right, as a share of the light: [`SURE`] standard errors may be so much. A bias that
+/// hides in more would be seen in a picture: a tenth of the light is eleven steps of an 8-bit sRGB picture at full brightness.
+pub const KNOWN: f64 = 0.1;
 /// Standard errors by which a mean has to be off before it is called biased: by chance one mean in 370 is as far off.
 pub const SURE: f64 = 3.0;
 
@@ -19,6 +23,8 @@ pub enum Judgement {
     Safe,
     /// Right in the mean or but for single pixels.
     Noisy,
+    /// Too few samples to say: no bias is proved, and none is ruled out.
+    Unknown,
     /// Wrong, however many samples there are.
     Wrong,
 }
@@ -38,10 +44,16 @@ impl Judgement {
         if off <= WRONG_SHARE { Judgement::Safe } else { Judgement::Wrong }
     }
 
-    /// Of light by the variance of a sample over the squared mean, NaN where too little was found to know it, and by the share that its mean is
-    /// certainly off. Where the variance is that large the mean is not known, and no bias is held against it.
-    pub fn of_light(variance: f64, bias: f64) -> Self {
-        if variance <= NOISY_VARIANCE { Judgement::of_share(bias) } else { Judgement::Noisy }
+    /// Of light by the variance of a sample over the squared mean, NaN where too little was found to know it, by the share that its mean is
+    /// certainly off, and by the standard error of that share. Where the variance is that large no bias is held against the mean.
+    pub fn of_light(variance: f64, bias: f64, error: f64) -> Self {
+        // NaN is neither.
+        let (even, known) = (variance <= NOISY_VARIANCE, SURE * error <= KNOWN);
+        match Judgement::of_share(bias) {
+            _ if !even => Judgement::Noisy,
+            Judgement::Safe if !known => Judgement::Unknown,
+            judgement => judgement,
+        }
     }
 
     /// As the page has it.
@@ -49,6 +61,7 @@ impl Judgement {
         match self {
             Judgement::Safe => '●',
             Judgement::Noisy => '▲',
+            Judgement::Unknown => '?',
             Judgement::Wrong => '✖',
         }
     }
@@ -128,9 +141,19 @@ impl Verdict {
         self.ranges.iter().all(|range| range.judgement == Judgement::Safe)
     }
 
-    /// The first stretch that is safe.
-    pub fn safe(&self) -> Option<&Range> {
-        self.ranges.iter().find(|range| range.judgement == Judgement::Safe)
+    /// Whether it is wrong anywhere.
+    pub fn has_wrong(&self) -> bool {
+        self.ranges.iter().any(|range| range.judgement == Judgement::Wrong)
+    }
+
+    /// The stretch with which the way begins, if that is safe.
+    pub fn safe_start(&self) -> Option<&Range> {
+        self.ranges.first().filter(|range| range.judgement == Judgement::Safe)
+    }
+
+    /// The stretch with which the way ends, if that is safe.
+    pub fn safe_end(&self) -> Option<&Range> {
+        self.ranges.last().filter(|range| range.judgement == Judgement::Safe)
     }
 
     /// As a cell of a table: `● to 1e5, ▲ to 1e6, ✖ beyond`, or a symbol alone for all of the way.
@@ -151,7 +174,8 @@ impl Verdict {
     }
 }
 
-/// A place on the way of a sweep: three digits, but all of them near 1, where the distance from it counts.
+/// A place on the way of a sweep, for which the report's [`number`](crate::report::words::number) has too few digits near 1 and too many zeros
+/// elsewhere: three digits, but all of them near 1, where the distance from it counts.
 pub fn place(x: f64) -> String {
     let trimmed = |text: String| text.trim_end_matches('0').trim_end_matches('.').to_owned();
     let size = x.abs();
@@ -198,10 +222,33 @@ mod tests {
             [0.0, WRONG_SHARE, 2.0 * WRONG_SHARE, f64::NAN].map(Judgement::of_share),
             [Safe, Safe, Wrong, Wrong]
         );
-        let of_light = |variance, bias| Judgement::of_light(variance, bias);
-        assert_eq!([of_light(NOISY_VARIANCE, 0.0), of_light(1.0, 0.5)], [Safe, Wrong]);
+        let of_light = |variance, bias| Judgement::of_light(variance, bias, 0.0);
+        assert_eq!([of_light(NOISY_VARIANCE, 0.0), of_light(1.0, 0.5), of_light(1.0, f64::NAN)], [Safe, Wrong, Wrong]);
         // A mean of which the samples know nothing is not called biased.
         assert_eq!([of_light(f64::NAN, 1.0), of_light(1e3, 1.0)], [Noisy, Noisy]);
+    }
+
+    #[test]
+    fn what_is_not_known_is_not_safe() {
+        let known = KNOWN / SURE;
+        let of_error = |error| Judgement::of_light(1.0, 0.0, error);
+        assert_eq!([0.0, known, 1.01 * known, f64::NAN].map(of_error), [Safe, Safe, Unknown, Unknown]);
+        // What is proved is proved, however large the error; and much noise is found by any error.
+        assert_eq!(Judgement::of_light(1.0, 0.5, 1.0), Wrong);
+        assert_eq!(Judgement::of_light(1e3, 0.0, 1.0), Noisy);
+        let judged = [(0.5, Safe), (0.999, Safe), (0.9999, Unknown), (0.99999, Wrong)];
+        assert_eq!(verdict(&judged[..3], Worse::Upwards).in_words(), "● to 0.999, ? beyond");
+        assert!(!verdict(&judged[..3], Worse::Upwards).is_safe() && !verdict(&judged[..3], Worse::Upwards).has_wrong());
+        assert_eq!(verdict(&[(1.0, Unknown), (1.0, Noisy)], Worse::Upwards).in_words(), "?");
+        assert!(verdict(&judged, Worse::Upwards).has_wrong());
+    }
+
+    #[test]
+    fn only_the_ends_of_the_way_are_its_ends() {
+        let island = verdict(&[(1.0, Wrong), (2.0, Safe), (3.0, Noisy)], Worse::Upwards);
+        assert_eq!((island.safe_start(), island.safe_end()), (None, None));
+        let ends = verdict(&[(1.0, Safe), (2.0, Wrong), (3.0, Safe)], Worse::Downwards);
+        assert_eq!((ends.safe_start().unwrap().to, ends.safe_end().unwrap().from), (3.0, 1.0));
     }
 
     #[test]
@@ -213,9 +260,9 @@ mod tests {
         assert_eq!(up.ranges, [range(1.0, 10.0, Safe), range(100.0, 100.0, Noisy), range(1e3, 1e4, Wrong)]);
         assert_eq!(up.in_words(), "● to 10, ▲ to 100, ✖ beyond");
         assert_eq!(verdict(&judged, Worse::Downwards).in_words(), "✖ to 1000, ▲ to 100, ● below");
-        assert!(!up.is_safe() && up.safe() == Some(&range(1.0, 10.0, Safe)));
+        assert!(!up.is_safe() && up.safe_start() == Some(&range(1.0, 10.0, Safe)));
         let none = verdict(&[], Worse::Upwards);
-        assert_eq!((none.in_words().as_str(), none.safe()), ("–", None));
+        assert_eq!((none.in_words().as_str(), none.safe_start()), ("–", None));
         let all = verdict(&[(1.0, Safe), (2.0, Safe)], Worse::Upwards);
         assert_eq!((all.in_words().as_str(), all.is_safe()), ("●", true));
         assert_eq!(verdict(&[(1e-6, Wrong), (1e-5, Safe)], Worse::Upwards).in_words(), "✖ at 1e-6, ● beyond");

@@ -108,7 +108,7 @@ impl Measured {
     }
 
     fn judgement(&self) -> (f64, Judgement) {
-        (self.albedo(), Judgement::of_light(self.noise / self.rays, certain_bias(self.ratio, self.error)))
+        (self.albedo(), Judgement::of_light(self.noise / self.rays, certain_bias(self.ratio, self.error), self.error))
     }
 }
 
@@ -124,10 +124,11 @@ fn verdicts(all: &[(Backend, Vec<Vec<Measured>>)], beyond: &[Measured]) -> Vec<V
     terminations().into_iter().enumerate().map(of).collect()
 }
 
-/// From which albedo on a termination is more than 1 % off, and by how much at the largest.
+/// From which albedo on a termination is certainly more than 1 % off, and by how much at the largest.
 fn evidence<'a>(measured: impl Iterator<Item = &'a Measured> + Clone) -> String {
     let off = measured.clone().filter(|m| (m.ratio - 1.0).abs() > 0.01 + SURE * m.error).map(Measured::albedo);
-    let from = off.reduce(f64::min).map_or("never".into(), |albedo| format!("from albedo {} on", place(albedo)));
+    let from =
+        off.reduce(f64::min).map_or("never for certain".into(), |albedo| format!("from albedo {} on", place(albedo)));
     let farthest = |a: &&Measured, b: &&Measured| {
         a.albedo().total_cmp(&b.albedo()).then((a.ratio - 1.0).abs().total_cmp(&(b.ratio - 1.0).abs()))
     };

@@ -2,10 +2,11 @@
 
 use crate::Workbench;
 use crate::chart::{Axis, Point, Series};
+use crate::report::words::share;
 use crate::stability::judge::{certain_bias, light};
-use crate::stability::light::{Spot, Tally, chart, irradiance_of_mesh, percent, series, without_roulette};
+use crate::stability::light::{Spot, Tally, chart, irradiance_of_mesh, series, without_roulette};
 use crate::stability::sweep::{Definition, Family, Findings, Sweep};
-use crate::stability::verdict::{Judgement, Verdict, Worse, stretch};
+use crate::stability::verdict::{EVEN, Judgement, Verdict, Worse, stretch};
 use crate::stability::wall::{ALBEDO, IMAGE, LIGHT, REFLECTANCE, room, variance};
 use glam::{Affine3A, Vec3};
 use luminaire::Result;
@@ -83,7 +84,7 @@ pub fn sweep(bench: &Workbench, sides: &[f32], samples: u32) -> Result<Sweep> {
             series.points.push(measure(*backend, LightSampling::Mis)?.share_of(x, by_mirror, straight));
         }
     }
-    // A point is never met, which no number of samples tells: nothing varies.
+    // A point is never met, and the samples do not show it: nothing varies.
     let judge = |method: usize| {
         let point = |p: &Point| (p.x, Judgement::of_share(certain_bias(p.y, p.error.unwrap_or(0.0))));
         let of_point = shares[method].points.iter().filter(|p| p.x == 0.0).map(point);
@@ -104,14 +105,15 @@ pub fn sweep(bench: &Workbench, sides: &[f32], samples: u32) -> Result<Sweep> {
     // In proportion to one over the area: as a number that does not depend on the side.
     let of_area = noise[1].points.iter().filter(|p| p.x > 0.0 && !p.y.is_nan()).map(|p| p.y * p.x * p.x);
     let factor = of_area.fold(0.0, f64::max);
-    let needs = |side: f64| factor / (side * side) / 0.05f64.powi(2);
+    let needs = |side: f64| factor / (side * side) / EVEN.powi(2);
     let point = shares.iter().chain(&on_gpu).flat_map(|s| s.points.iter().filter(|p| p.x == 0.0));
     let found_of_point = point.map(|p| p.y.abs()).fold(0.0, f64::max);
     let findings = Findings {
         starts: format!(
-            "With a lamp of any size the noise of the mirrored light is {factor:.1} over the squared side: for 5 % a pixel takes {:.0e} \
+            "With a lamp of any size the noise of the mirrored light is {factor:.1} over the squared side: for {:.0} % a pixel takes {:.0e} \
              samples where the side is a tenth of the distance, {:.0e} where it is a hundredth, {:.0e} where it is a thousandth. From a point luminaire \
              no estimator finds the way.",
+            100.0 * EVEN,
             needs(0.1),
             needs(0.01),
             needs(1e-3),
@@ -120,8 +122,8 @@ pub fn sweep(bench: &Workbench, sides: &[f32], samples: u32) -> Result<Sweep> {
             "Light sampling cannot aim by way of a mirror, so that only chance meets the lamp in it: fireflies, as bright as they are rare. \
              A point cannot be met: what the mirror throws on the floor is missing, a bias that no number of samples mends. Here it is {} \
              of all light, by the image behind the mirror; found of it: {}.",
-            percent(missing),
-            percent(found_of_point),
+            share(missing),
+            share(found_of_point),
         ),
         mends: "Nothing: that takes photon maps, bidirectional paths or manifold walks, which luminaire does not have. A point luminaire, \
                 and one at infinity, lights what it sees straight and no more; give such a light a size, the larger the better."
@@ -134,9 +136,9 @@ pub fn sweep(bench: &Workbench, sides: &[f32], samples: u32) -> Result<Sweep> {
     };
     shares.extend(on_gpu);
     const SIDE: &str = "side of the lamp (0: point luminaire)";
-    let share = Axis::linear("share found of the mirrored light");
+    let axis = Axis::linear("share found of the mirrored light");
     let charts = vec![
-        chart("energy", "Light by way of a mirror", SIDE, share, shares),
+        chart("energy", "Light by way of a mirror", SIDE, axis, shares),
         chart("noise", "Noise of a floor that is lit by way of a mirror, too", SIDE, variance("mirror"), noise),
     ];
     let summary = "Give every light a size, the larger the better: no estimator finds a point in a mirror.".into();

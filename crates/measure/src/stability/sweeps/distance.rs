@@ -7,9 +7,9 @@ use crate::stability::geometry::{
     COMPUTE_BVH, RAY_QUERY, Stand, T_MIN, add, baked, chart, decades, distance_error, lost, named, per_million, placed,
     rays_to_faces, rays_to_features, value,
 };
-use crate::stability::judge::{geometric, up_to};
+use crate::stability::judge::{geometric, safe_until, up_to};
 use crate::stability::sweep::{Definition, Family, Findings, Sweep};
-use crate::stability::verdict::{Worse, stretch};
+use crate::stability::verdict::{Verdict, Worse, stretch};
 use glam::{Affine3A, Vec3};
 use luminaire::Result;
 use luminaire::scene::build::icosphere;
@@ -89,11 +89,14 @@ pub fn sweep(bench: &Workbench, distances: &[f64], rays: usize) -> Result<Sweep>
     let range = stretch(distances.iter().copied(), Worse::Upwards, "sizes from the origin");
     let summary =
         up_to(&verdicts, COMPUTE_BVH, |end| format!("Keep a scene within {end} of its own sizes from the origin."));
-    let findings = findings(&charts);
+    let findings = findings(&charts, &verdicts);
     Ok(Sweep { charts, range, verdicts, summary, findings })
 }
 
-fn findings(charts: &[Chart]) -> Findings {
+fn findings(charts: &[Chart], verdicts: &[Verdict]) -> Findings {
+    let fixed = safe_until(verdicts, T_MIN).map_or("from the start".into(), |end| format!("beyond {end} sizes"));
+    let nothing = safe_until(verdicts, COMPUTE_BVH)
+        .map_or(String::new(), |end| format!("By the compute BVH nothing up to {end} sizes. Beyond, "));
     let error = |way: &str, method: &str| value(named(charts, &format!("error-{way}")), method, 1e4);
     Findings {
         starts: String::new(),
@@ -102,7 +105,7 @@ fn findings(charts: &[Chart]) -> Findings {
              is one point. Corners that are placed there are rounded once, and the body stays closed as long as it has a volume; \
              hits on it stay good ({} of the size at 1e4). An instance keeps its shape, and the ray is taken into its space: as a matrix \
              and a translation, which cancel, that rounds by the distance ({} of the size at 1e4 by the ray query). A fixed smallest \
-             distance does not grow with the rounding, which passes it at 1e3 to 1e4 sizes.",
+             distance does not grow with the rounding, which passes it {fixed}.",
             error("vertices", COMPUTE_BVH),
             error("instance", RAY_QUERY)
         ),
@@ -112,8 +115,9 @@ fn findings(charts: &[Chart]) -> Findings {
              point itself, which may put it behind another face close by.",
             error("instance", COMPUTE_BVH)
         ),
-        sees: "Nothing up to 1e4 sizes. Beyond, light leaks along edges and thin parts, first as single pixels; from 1e6 on surfaces are visibly \
-             stepped. Move the scene to the origin."
-            .into(),
+        sees: format!(
+            "{nothing}light leaks along edges and thin parts, first as single pixels; where the verdict is wrong, surfaces are visibly stepped. \
+             Move the scene to the origin."
+        ),
     }
 }

@@ -3,7 +3,7 @@
 use crate::Workbench;
 use crate::stability::judge::everywhere;
 use crate::stability::lamp::{DEFAULT, Found, farthest, highest, lit_by, measure, powers, samples, starts};
-use crate::stability::light::percent;
+use crate::stability::light::within;
 use crate::stability::sweep::{Definition, Family, Findings, Sweep};
 use crate::stability::verdict::{Worse, stretch};
 use glam::Vec3;
@@ -48,13 +48,11 @@ fn findings(Found { fireflies, shares, gpu, tally, .. }: &Found) -> Findings {
             .into(),
         mends: format!(
             "A triangle of less than a thousandth of a steradian is sampled by area even where it is near, because solid angles cancel. \
-             The largest sample of the default is {:.1} times the mean, and the light is that of Lambert's formula, beyond three standard \
-             errors, to {} on the CPU and to {} on the GPU at a sine of 1e-3 and above, below that to {} and {}. {}",
+             The largest sample of the default is {:.1} times the mean, and the light, held against Lambert's formula, is {} on the \
+             CPU and {} on the GPU at every sine. {}",
             highest(&fireflies[4]),
-            percent(farthest([&shares[4]], 9e-4..=2.0)),
-            percent(farthest(gpu, 9e-4..=2.0)),
-            percent(farthest([&shares[4]], 0.0..=9e-4)),
-            percent(farthest(gpu, 0.0..=9e-4)),
+            within(farthest([&shares[4]], 0.0..=2.0)),
+            within(farthest(gpu, 0.0..=2.0)),
             tally.sentence(),
         ),
         sees: "With the defaults nothing; without light sampling, fireflies in the light of screens and panels that are seen from the side."

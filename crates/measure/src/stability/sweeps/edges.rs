@@ -97,7 +97,7 @@ pub fn sweep(bench: &Workbench, angles: &[f64], rays: usize) -> Result<Sweep> {
         }
         charts.extend([lost, error]);
     }
-    // The error along the ray is left out: a grazing ray's grows without that anything is seen of it.
+    // The error along the ray is left out: a grazing ray is off along the surface, where nothing is seen of it.
     let counts: Vec<_> = charts.iter().filter(|chart| chart.name.starts_with("lost")).collect();
     let verdicts = geometric(&counts, &[], Worse::Downwards);
     let range = stretch(angles.iter().copied(), Worse::Downwards, "degrees to the surface");
@@ -139,7 +139,8 @@ fn findings(charts: &[Chart]) -> Findings {
     let error = |x: f64| value(named(charts, "error-turned"), COMPUTE_BVH, x);
     Findings {
         starts: format!(
-            "The error along the ray, turned: {} at 1 degree, {} at 1e-3, {} at 1e-5. Rays that are lost:",
+            "The error along the ray, turned, is {} at 1 degree, {} at 1e-3 and {} at 1e-5; no verdict goes by it, because a ray at a small angle to \
+             the surface is off along the surface, where nothing is seen of it. Rays that are lost:",
             error(1.0),
             error(1e-3),
             error(1e-5)
@@ -154,7 +155,7 @@ fn findings(charts: &[Chart]) -> Findings {
              query does is the driver's; the compute BVH can be asked for instead."
             .into(),
         sees: "With a method that loses rays: dotted light or dark lines along the edges of a mesh, a pixel here and there, which more \
-             samples do not remove. Grazing angles: nothing."
+             samples do not remove. Of the error along grazing rays: nothing."
             .into(),
     }
 }

@@ -19,7 +19,7 @@ use luminaire::scene::build::{add as add_mesh, cube, empty, icosphere};
 pub const DEFINITION: Definition = Definition {
     name: "eta",
     family: Family::Geometry,
-    title: "Glass with an index of refraction of 1.0001 to 4",
+    title: "Glass with an index of refraction of 4 to 1.0001",
     run,
 };
 
@@ -120,9 +120,10 @@ pub fn sweep(bench: &Workbench, etas: &[f64], angles: usize, samples: u32) -> Re
     let charts = vec![reflectance, direction, furnace, longest, trapped];
     // The axis is the index less 1, by which it is hard; the page has the index.
     let by_index: Vec<Chart> = charts[..3].iter().cloned().map(index_itself).collect();
-    let mut verdicts = geometric(&[], &[&by_index[2]], Worse::Upwards);
+    // Indices near 1 are the hard ones.
+    let mut verdicts = geometric(&[], &[&by_index[2]], Worse::Downwards);
     verdicts.extend(geometric(&[], &[&by_index[0], &by_index[1]], Worse::Downwards));
-    let range = stretch(etas.iter().copied(), Worse::Upwards, "(index)");
+    let range = stretch(etas.iter().copied(), Worse::Downwards, "(index)");
     let summary = everywhere(
         &verdicts,
         COMPUTE_BVH,

@@ -3,7 +3,7 @@
 use crate::Workbench;
 use crate::chart::{Axis, Chart, Point, Series};
 use crate::report::words::{deviation, share};
-use crate::stability::judge::up_to;
+use crate::stability::judge::{certain_bias, up_to};
 use crate::stability::limits::above_from;
 use crate::stability::rooms::{furnace, furnace_radiance, room, without_roulette};
 use crate::stability::sweep::{Definition, Family, Findings, Sweep};
@@ -66,9 +66,9 @@ struct Measured {
 }
 
 impl Measured {
-    /// The bias, as far as it is certain: 0 where it is within three standard errors.
+    /// The bias, as far as it is certain: 0 where it is within [`SURE`] standard errors.
     fn certain_bias(&self) -> f64 {
-        if self.bias.abs() > 3.0 * self.error { self.bias } else { 0.0 }
+        if self.bias.abs() > SURE * self.error { self.bias } else { 0.0 }
     }
 
     /// Error of a pixel after so many rays for it: bias and noise together.
@@ -223,7 +223,7 @@ fn sweep(bench: &Workbench, steps: &Steps) -> Result<Sweep> {
 
 /// Each way to end paths in the coloured room over all backends, the default first.
 fn verdicts(steps: &Steps, rooms: &[Room]) -> Vec<Verdict> {
-    let judge = |m: &Measured| Judgement::of_light(m.variance, (m.bias.abs() - SURE * m.error).max(0.0));
+    let judge = |m: &Measured| Judgement::of_light(m.variance, certain_bias(1.0 + m.bias, m.error), m.error);
     let without_range = |method: &str, of: fn(&Room) -> &Measured| {
         let (first, last) = (steps.thresholds[0], steps.thresholds[steps.thresholds.len() - 1]);
         let judged = rooms.iter().flat_map(|room| [first, last].map(|x| (x, judge(of(room)))));

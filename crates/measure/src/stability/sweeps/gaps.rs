@@ -5,9 +5,9 @@ use crate::chart::Axis;
 use crate::random::Random;
 use crate::rays::Ray;
 use crate::stability::geometry::{COMPUTE_BVH, Departures, Stand, T_MIN, add, chart, decades, per_million};
-use crate::stability::judge::{geometric, up_to};
+use crate::stability::judge::{geometric, safe_until, up_to};
 use crate::stability::sweep::{Definition, Family, Findings, Sweep};
-use crate::stability::verdict::{Worse, stretch};
+use crate::stability::verdict::{Verdict, Worse, stretch};
 use glam::{Affine3A, Vec3};
 use luminaire::Result;
 use luminaire::reference::hit::Hit;
@@ -89,7 +89,7 @@ pub fn sweep(bench: &Workbench, gaps: &[f64], rays: usize) -> Result<Sweep> {
     let summary = up_to(&verdicts, COMPUTE_BVH, |end| {
         format!("Keep surfaces {end} of their size apart, or leave out the hidden one.")
     });
-    Ok(Sweep { charts, range, verdicts, summary, findings: findings() })
+    Ok(Sweep { charts, range, summary, findings: findings(&verdicts), verdicts })
 }
 
 /// Rays from the middle of the gap down to the floor, up to 70 degrees off its normal.
@@ -116,16 +116,20 @@ fn rays_from_below(map: Affine3A, n: usize) -> Vec<Ray> {
     (0..n).map(ray).collect()
 }
 
-fn findings() -> Findings {
+fn findings(verdicts: &[Verdict]) -> Findings {
+    let nothing = safe_until(verdicts, COMPUTE_BVH).map_or(String::new(), |end| {
+        format!("By the compute BVH nothing for gaps of {end} of the size and more. In narrower ones ")
+    });
     Findings {
         starts: String::new(),
         how: "A ray leaves a surface some way off it, lest it meets it again. A wall that is nearer than that is passed. A fixed distance passes \
-             it at the distance itself, and at slanting angles before. The bound of the rounding is about 1e-6 of the largest of the \
+             it at the distance itself, and at slanting angles before. The bound of the rounding is some units in the last place of the largest of the \
              surface's size and its coordinates; nearer surfaces than that have corners that round into each other."
             .into(),
         mends: "The distance by which a ray is moved is the bound of its own rounding, no more: of the triangle's size, not of the scene's.".into(),
-        sees: "Nothing for gaps of 1e-5 of the size and more. Below 1e-6 light shines through double walls, and surfaces that \
-               lie on each other flicker between the two materials. Leave out the inner one."
-            .into(),
+        sees: format!(
+            "{nothing}light shines through double walls, and surfaces that lie on each other flicker between the two materials. Leave out the \
+             inner one."
+        ),
     }
 }

@@ -2,12 +2,13 @@
 
 use crate::Workbench;
 use crate::chart::{Axis, Point, Series};
+use crate::report::words::share;
 use crate::stability::judge::{everywhere, light};
 use crate::stability::light::{
-    Spot, Tally, chart, looking_from, noise_axis, off, over_parallelogram, percent, series, without_roulette,
+    Spot, Tally, chart, looking_from, noise_axis, off, over_parallelogram, series, within, without_roulette,
 };
 use crate::stability::sweep::{Definition, Family, Findings, Sweep};
-use crate::stability::verdict::{Verdict, Worse, place, stretch};
+use crate::stability::verdict::{NOISY_VARIANCE, Verdict, Worse, stretch};
 use glam::{Affine3A, DVec3, Vec3};
 use luminaire::Result;
 use luminaire::backend::Backend;
@@ -132,7 +133,8 @@ pub fn sweep(bench: &Workbench, steps: &Steps) -> Result<Sweep> {
     let (mut sky_bsdf, mut sky_mis, mut lamp_mis) =
         (by_backend("BSDF sampling"), by_backend("MIS with the sky"), by_backend("MIS with the middling lamp"));
     let mut sky_even = series(["cosine sampling, cpu", "uniform sampling, cpu"]);
-    let mut noise: Vec<Vec<Series>> = LAMPS.iter().map(|_| series(METHODS)).collect();
+    let of_lamps = || -> Vec<Vec<Series>> { LAMPS.iter().map(|_| series(METHODS)).collect() };
+    let (mut noise, mut found) = (of_lamps(), of_lamps());
     for &exponent in &steps.exponents {
         let x = f64::from(exponent);
         let mut sky = plate(exponent, 1.0);
@@ -155,16 +157,18 @@ pub fn sweep(bench: &Workbench, steps: &Steps) -> Result<Sweep> {
             let (scene, truth) = lit(exponent, LAMPS[1].1);
             lamp_mis[index].points.push(measure(&scene, truth, backend, both)?.1);
         }
-        for (series, (_, half)) in noise.iter_mut().zip(LAMPS) {
+        for ((noise, found), (_, half)) in noise.iter_mut().zip(&mut found).zip(LAMPS) {
             let (scene, truth) = lit(exponent, half);
             let light = without_roulette(LightSampling::Direct, 0);
             let roulette = Estimator { extinction: Extinction::Throughput, ..both };
-            for (series, estimator) in series.iter_mut().zip([light, chance, both, roulette]) {
-                series.points.push(measure(&scene, truth, Backend::Cpu, estimator)?.0.noise(x, truth));
+            for (method, estimator) in [light, chance, both, roulette].into_iter().enumerate() {
+                let (spot, share) = measure(&scene, truth, Backend::Cpu, estimator)?;
+                noise[method].points.push(spot.noise(x, truth));
+                found[method].points.push(share);
             }
         }
     }
-    let verdicts = verdicts(&noise, &[&sky_mis[..], &lamp_mis].concat(), &sky_bsdf);
+    let verdicts = verdicts(&noise, &found, &[&sky_mis[..], &lamp_mis].concat(), &sky_bsdf);
     let range = stretch(steps.exponents.iter().map(|exponent| f64::from(*exponent)), Worse::Upwards, "(exponent)");
     let summary = everywhere(
         &verdicts,
@@ -174,9 +178,9 @@ pub fn sweep(bench: &Workbench, steps: &Steps) -> Result<Sweep> {
     let findings = findings(&sky_even, &[&sky_bsdf[..], &sky_mis, &lamp_mis].concat(), &noise, &tally);
     let energy: Vec<Series> = [sky_even, sky_bsdf, sky_mis, lamp_mis].concat();
     const EXPONENT: &str = "glossy exponent";
-    let share = Axis::linear("share found of the energy");
+    let axis = Axis::linear("share found of the energy");
     let mut charts =
-        vec![chart("energy", "Energy that a glossy plate reflects, over the truth", EXPONENT, share, energy)];
+        vec![chart("energy", "Energy that a glossy plate reflects, over the truth", EXPONENT, axis, energy)];
     for (series, (name, half)) in noise.into_iter().zip(LAMPS) {
         let title = format!("Noise of a glossy plate that mirrors a {name} lamp ({half} of its distance)");
         charts.push(chart(&format!("noise-{name}-lamp"), &title, EXPONENT, noise_axis(), series));
@@ -184,30 +188,15 @@ pub fn sweep(bench: &Workbench, steps: &Steps) -> Result<Sweep> {
     Ok(Sweep { charts, range, verdicts, summary, findings })
 }
 
-/// The default first. With roulette the light is that of both without it, of which every backend was measured.
-fn verdicts(noise: &[Vec<Series>], both: &[Series], bsdf: &[Series]) -> Vec<Verdict> {
+/// The default first. Each by the noise and the light that was found under every lamp, and by shares of more scenes on every backend: with roulette by
+/// those of both without it.
+fn verdicts(noise: &[Vec<Series>], found: &[Vec<Series>], both: &[Series], bsdf: &[Series]) -> Vec<Verdict> {
     let of = |method: usize, shares: &[Series]| {
         let variances: Vec<_> = noise.iter().map(|lamp| &lamp[method]).collect();
-        let verdict = light(METHODS[method], &variances, &shares.iter().collect::<Vec<_>>(), Worse::Upwards);
-        Verdict { evidence: grainy(noise, method), ..verdict }
+        let shares: Vec<_> = found.iter().map(|lamp| &lamp[method]).chain(shares).collect();
+        light(METHODS[method], &variances, &shares, Worse::Upwards)
     };
     vec![of(3, both), of(2, both), of(0, &[]), of(1, bsdf)]
-}
-
-/// Where a sample varies by more than its mean, and ten times as much as by the best method, in words.
-fn grainy(noise: &[Vec<Series>], method: usize) -> String {
-    let fails = |lamp: &[Series]| -> Vec<f64> {
-        let at = |m: usize, i: usize| Some(lamp[m].points[i].y).filter(|y| !y.is_nan()).unwrap_or(f64::INFINITY);
-        let points = &lamp[method].points;
-        let best = |i: usize| (0..3).map(|m| at(m, i)).fold(f64::INFINITY, f64::min);
-        (0..points.len()).filter(|&i| at(method, i) > (10.0 * best(i)).max(1.0)).map(|i| points[i].x).collect()
-    };
-    let in_words = |(lamp, (name, _)): (&Vec<Series>, (&str, f64))| match fails(lamp)[..] {
-        [] => format!("{name}: nowhere"),
-        [only] => format!("{name}: at {}", place(only)),
-        [first, .., last] => format!("{name}: {} to {}", place(first), place(last)),
-    };
-    noise.iter().zip(LAMPS).map(in_words).collect::<Vec<_>>().join("; ")
 }
 
 fn findings(even: &[Series], kept: &[Series], noise: &[Vec<Series>], tally: &Tally) -> Findings {
@@ -216,11 +205,11 @@ fn findings(even: &[Series], kept: &[Series], noise: &[Vec<Series>], tally: &Tal
         points.map(|p| p.y).filter(|y| !y.is_nan()).fold(0.0, f64::max)
     };
     let blind = even[0].points.iter().find(|p| p.y < 0.5).map(|p| p.x);
-    let up_to = |limit: f64| kept.iter().map(|s| off(s, 0.0..=limit)).fold(0.0, f64::max);
+    let farthest = kept.iter().map(|s| off(s, 0.0..=f64::INFINITY)).fold(0.0, f64::max);
     Findings {
         starts: format!(
-            "Cosine sampling of the plate under the sky {}. Where a sample varies by more than its mean, and ten times as much as by the best \
-             method, with the small, the middling and the large lamp:",
+            "Cosine sampling of the plate under the sky {}. With the small, the middling and the large lamp, of which the worst counts, a sample \
+             varies by more than ten times its mean (variance above {NOISY_VARIANCE}):",
             blind.map_or("finds the light at every exponent".into(), |x| format!("loses more than half of it from {x:e} on")),
         ),
         how: "By noise, not by bias: a sharp lobe is rarely met by a point on a large lamp or by a direction that ignores it, a small \
@@ -231,13 +220,12 @@ fn findings(even: &[Series], kept: &[Series], noise: &[Vec<Series>], tally: &Tal
             "Both ways at once, by the power heuristic: a sample varies by at most {:.2} times the squared mean. Roulette by throughput ends \
              all but {} of the paths of this dark plate (albedo {VARNISH}), and the heuristic, which knows that, trusts light sampling \
              instead; what light sampling finds badly stays noisy, up to {:.0} times the squared mean, as rare as the survivors are. \
-             Directions are chosen by the half vector, with sines where cosines are nearly 1. Energy is kept to {} up to an exponent \
-             of 1e6 and to {} up to 1e8, beyond three standard errors, on every backend. {}",
+             Directions are chosen by the half vector, with sines where cosines are nearly 1. On every backend the \
+             light, held against the truth, is {} at every exponent. {}",
             highest(2),
-            percent(f64::from(VARNISH) * directional_albedo(1e8)),
+            share(f64::from(VARNISH) * directional_albedo(1e8)),
             highest(3),
-            percent(up_to(1e6)),
-            percent(up_to(1e8)),
+            within(farthest),
             tally.sentence(),
         ),
         sees: "With the defaults, even noise at every exponent, but for bright reflections in dark sharp plates, where roulette is paid for: \

@@ -2,10 +2,10 @@
 
 use crate::Workbench;
 use crate::chart::{Axis, Point, Series};
-use crate::stability::judge::{light, up_to};
-use crate::stability::light::{Spot, Tally, chart, off, over_parallelogram, percent, series, without_roulette};
+use crate::stability::judge::{light, safe_until, up_to};
+use crate::stability::light::{Spot, Tally, chart, off, over_parallelogram, series, within, without_roulette};
 use crate::stability::sweep::{Definition, Family, Findings, Sweep};
-use crate::stability::verdict::{Verdict, Worse, stretch};
+use crate::stability::verdict::{EVEN, Verdict, Worse, stretch};
 use crate::stability::wall::{ALBEDO, IMAGE, LIGHT, REFLECTANCE, WALL, room, variance};
 use glam::{DVec3, Vec3};
 use luminaire::Result;
@@ -84,17 +84,17 @@ pub fn sweep(bench: &Workbench, exponents: &[f32], samples: u32) -> Result<Sweep
     let factor = noise[0].points.iter().filter(|p| p.x <= last && p.x >= 10.0).map(|p| p.y / p.x).fold(0.0, f64::max);
     let findings = Findings {
         starts: format!(
-            "The noise is at most {factor:.1} times the exponent: for 5 % of noise in that light a pixel takes {:.0e} samples at 100, \
+            "The noise is at most {factor:.1} times the exponent: for {:.0} % of noise in that light a pixel takes {:.0e} samples at 100, \
              {:.0e} at 1e4, {:.0e} at 1e6. With {samples} samples the light is known to a tenth up to {last:.0e}.",
-            factor * 1e2 / 0.0025,
-            factor * 1e4 / 0.0025,
-            factor * 1e6 / 0.0025,
+            100.0 * EVEN,
+            factor * 1e2 / EVEN.powi(2),
+            factor * 1e4 / EVEN.powi(2),
+            factor * 1e6 / EVEN.powi(2),
         ),
         how: format!(
-            "No bias: where it is known to a tenth, the light is that of the integral over the wall to {}, beyond three standard errors, on \
-             every backend. But a path finds it only if its direction, chosen for the floor, falls into the part of the wall whose lobe \
+            "Where it is known to a tenth, the light is {}, held against the integral over the wall, on every backend. But a path finds it only if its direction, chosen for the floor, falls into the part of the wall whose lobe \
              shows the light, which shrinks as one over the exponent. At {:.0e} the share that was found is {:.2}.",
-            percent(farthest),
+            within(farthest),
             sharpest.0,
             sharpest.1,
         ),
@@ -102,8 +102,11 @@ pub fn sweep(bench: &Workbench, exponents: &[f32], samples: u32) -> Result<Sweep
                 limit: there nothing of a point luminaire is found."
             .into(),
         sees: format!(
-            "Caustics of point luminaires that are even below an exponent of about 100, fireflies above it, and that fade away towards the \
-             mirror. {}",
+            "{} They fade away towards the mirror. {}",
+            match safe_until(&verdicts, "both (MIS)") {
+                Ok(end) => format!("Caustics of point luminaires that are even up to an exponent of {end}, and fireflies beyond."),
+                Err(_) => "Caustics of point luminaires as fireflies.".into(),
+            },
             tally.sentence(),
         ),
     };

@@ -2,9 +2,9 @@
 
 use crate::Workbench;
 use crate::stability::lamp::{Found, farthest, highest, lit_by, measure, powers, samples, starts};
-use crate::stability::light::percent;
+use crate::stability::light::within;
 use crate::stability::sweep::{Definition, Family, Findings, Sweep};
-use crate::stability::verdict::{Judgement, Verdict, Worse, place, stretch};
+use crate::stability::verdict::{Verdict, Worse, place, stretch};
 use glam::Vec3;
 use luminaire::Result;
 use luminaire::scene::Scene;
@@ -42,9 +42,9 @@ pub fn sweep(bench: &Workbench, distances: &[f64], samples: u32) -> Result<Sweep
 
 /// How near a lamp may be by the defaults.
 fn of_nearest(default: &Verdict) -> String {
-    let nearest = default.ranges.iter().filter(|range| range.judgement == Judgement::Safe).map(|range| range.from);
-    nearest.reduce(f64::min).map_or("Nothing of this range is safe.".into(), |nearest| {
-        format!("Hang no lamp nearer to a surface than {} of its side.", place(nearest))
+    // From there on to the far end everything is safe.
+    default.safe_end().map_or("Not safe at the far end of the range.".into(), |safe| {
+        format!("Hang no lamp nearer to a surface than {} of its side.", place(safe.from))
     })
 }
 
@@ -63,15 +63,28 @@ fn findings(Found { fireflies, shares, gpu, tally, .. }: &Found) -> Findings {
         ),
         mends: format!(
             "By solid angle where the lamp is near, by area where it is far, and MIS over both: its largest sample is {:.1} times the \
-             mean, and the light is that of Lambert's formula, beyond three standard errors, to {} on the CPU everywhere, on the GPU to {} \
-             from 1e-5 on. {}",
+             mean, and the light, held against Lambert's formula, is {} on the CPU everywhere, and {} on the GPU from 1e-5 on. {}",
             highest(&fireflies[4]),
-            percent(farthest([&shares[4]], 0.0..=1e9)),
-            percent(farthest(gpu.iter().skip(1).step_by(2), 9e-6..=1e9)),
+            within(farthest([&shares[4]], 0.0..=1e9)),
+            within(farthest(gpu.iter().skip(1).step_by(2), 9e-6..=1e9)),
             tally.sentence(),
         ),
         sees: "With `area_sampling = \"area\"` and light sampling alone, fireflies and dark spots where a lamp nearly touches a wall. With \
-               the defaults nothing."
+               the defaults nothing at the distances that are safe."
             .into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stability::verdict::Judgement::{Safe, Wrong};
+
+    #[test]
+    fn the_nearest_lamp_has_no_worse_one_beyond() {
+        let of = |judged: &[_]| of_nearest(&Verdict::new("", judged.iter().copied(), Worse::Upwards, ""));
+        let island = [(1e-3, Safe), (1e-2, Wrong), (0.1, Safe), (1.0, Safe)];
+        assert_eq!(of(&island), "Hang no lamp nearer to a surface than 0.1 of its side.");
+        assert_eq!(of(&island[..2]), "Not safe at the far end of the range.");
     }
 }

@@ -47,9 +47,9 @@ pub fn sweep(bench: &Workbench, sizes: &[f64], rays: usize) -> Result<Sweep> {
     );
     let mut picture = chart(
         "picture",
-        "Mean of a picture of a room, off from the reference's at size 1",
+        "Mean of a picture of a room, off from the reference's at size 1 (both with the same random numbers)",
         x(),
-        "relative difference, the same random numbers",
+        "relative difference of the mean",
     );
     let room = room();
     let expected = mean(bench, &room, Backend::Cpu)?;

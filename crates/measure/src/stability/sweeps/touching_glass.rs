@@ -2,11 +2,12 @@
 
 use crate::Workbench;
 use crate::chart::{Axis, Point};
-use crate::stability::geometry::{COMPUTE_BVH, add, chart, decades, name_of};
+use crate::report::table::Table;
+use crate::stability::geometry::{COMPUTE_BVH, REFERENCE, add, chart, decades, name_of};
 use crate::stability::glass::{around_glass, glass};
-use crate::stability::judge::{geometric, up_to};
+use crate::stability::judge::{geometric, safe_until, up_to};
 use crate::stability::sweep::{Definition, Family, Findings, Sweep};
-use crate::stability::verdict::{Worse, stretch};
+use crate::stability::verdict::{Verdict, Worse, stretch};
 use glam::{Affine3A, Vec3};
 use luminaire::Result;
 use luminaire::scene::Scene;
@@ -81,25 +82,32 @@ pub fn sweep(bench: &Workbench, gaps: &[f64], samples: u32) -> Result<Sweep> {
     let summary = up_to(&verdicts, COMPUTE_BVH, |end| {
         format!("Leave a gap of at least {end} of the size between bodies of glass.")
     });
-    Ok(Sweep { charts, range, verdicts, summary, findings: findings(&touching) })
+    Ok(Sweep { charts, range, summary, findings: findings(&touching, &verdicts), verdicts })
 }
 
-fn findings(touching: &[(&str, &str, f64)]) -> Findings {
-    let touching: String =
-        touching.iter().map(|(scene, method, mean)| format!("| {scene} | {method} | {mean:.4} |\n")).collect();
+fn findings(touching: &[(&str, &str, f64)], verdicts: &[Verdict]) -> Findings {
+    let row =
+        |(scene, method, mean): &(&str, &str, f64)| vec![scene.to_string(), method.to_string(), format!("{mean:.4}")];
+    let touching = Table::new(["bodies", "method", "mean"]).with_rows(touching.iter().map(row)).markdown();
+    let until = |method: &str, words: fn(String) -> String| safe_until(verdicts, method).map_or(String::new(), words);
     Findings {
-        starts: format!(
-            "With no gap at all, where a mean of 1 is right:\n\n| bodies | method | mean |\n|---|---|---|\n{touching}\nWith a gap:"
-        ),
-        how: "Of two surfaces in one place a ray meets one, leaves it by its rounding bound, and is past the other. It then takes itself to be outside of a body \
+        starts: format!("With no gap at all, where a mean of 1 is right:\n\n{touching}\nWith a gap:"),
+        how: format!(
+            "Of two surfaces in one place a ray meets one, leaves it by its rounding bound, and is past the other. It then takes itself to be outside of a body \
              in which it is, and the factors of the squared index (2.25 for glass) no longer cancel: such a path brings too much light, or too little. In \
-             double precision the same happens at gaps of 1e-8 and less to corners that are given in single precision."
-            .into(),
-        mends: "The bound is about 1e-6 of the size, so that gaps of 1e-5 and more are safe. Coincident faces of glass are not resolved: luminaire has no \
-             priorities of nested media."
-            .into(),
-        sees: "Glass that touches glass, or liquid that touches its glass, too bright or too dark in patches. Leave a gap of 1e-4 of the size, \
-             or model the common face once, with the ratio of both indices."
-            .into(),
+             double precision the same happens to corners that are given in single precision{}.",
+            until(REFERENCE, |end| format!(", in gaps narrower than {end}"))
+        ),
+        mends: format!(
+            "The bound is some units in the last place of the size{}. Coincident faces of glass are not resolved: luminaire has no priorities of \
+             nested media.",
+            until(COMPUTE_BVH, |end| format!(", so that gaps of {end} and more are safe"))
+        ),
+        sees: format!(
+            "Glass that touches glass, or liquid that touches its glass, too bright or too dark in patches. {}odel the common face once, with the \
+             ratio of both indices.",
+            safe_until(verdicts, COMPUTE_BVH)
+                .map_or("M".into(), |end| format!("Leave a gap of {end} of the size, or m"))
+        ),
     }
 }

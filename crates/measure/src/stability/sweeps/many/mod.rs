@@ -5,7 +5,8 @@ mod timing;
 
 use crate::Workbench;
 use crate::chart::{Axis, Chart, Point, Series};
-use crate::report::words::{count, share};
+use crate::report::table::Table;
+use crate::report::words::{capital, count, share};
 use crate::stability::judge::{light, up_to};
 use crate::stability::limits::largest;
 use crate::stability::sweep::{Definition, Family, Findings, Sweep};
@@ -37,6 +38,8 @@ struct Steps {
 /// The default, as a method, and what it is held against.
 const BOTH: &str = "both, weighted";
 const DIRECT: &str = "direct light alone";
+/// Paths of many bounces in a closed room, as a method.
+const LONG_PATHS: &str = "long paths";
 
 fn run(bench: &Workbench) -> Result<Sweep> {
     let steps = match bench.long {
@@ -141,16 +144,16 @@ fn sweep(bench: &Workbench, steps: &Steps) -> Result<Sweep> {
     }
     let verdicts = verdicts(&noise, &drift);
     let range = stretch(steps.numbers.iter().map(|n| f64::from(*n)), Worse::Upwards, "things");
-    let summary = up_to(&verdicts, BOTH, |end| {
-        format!("Nothing becomes wrong, and time grows gently; beyond {end} lamps of equal power noise is large.")
-    });
-    let findings = findings(steps, [&light_time, &object_time, &bounce_time, &memory, &noise, &drift]);
+    let wrong = becomes_wrong(&verdicts);
+    let summary =
+        up_to(&verdicts, BOTH, |end| format!("{}; beyond {end} lamps of equal power noise is large.", capital(&wrong)));
+    let findings = findings(steps, &wrong, [&light_time, &object_time, &bounce_time, &memory, &noise, &drift]);
     let mut charts = vec![light_time, object_time, bounce_time, memory, noise, drift];
     charts.retain(|chart| !chart.series.is_empty());
     Ok(Sweep { charts, range, verdicts, summary, findings })
 }
 
-/// Both ways to find the light of many lamps, the default first, which has long paths as well.
+/// Both ways to find the light of many lamps, by its noise, the default first; and long paths, by how far their mean drifts.
 fn verdicts(noise: &Chart, drift: &Chart) -> Vec<Verdict> {
     let squared = |series: &Series| Series {
         points: series.points.iter().map(|p| Point { y: p.y * p.y, ..*p }).collect(),
@@ -161,15 +164,20 @@ fn verdicts(noise: &Chart, drift: &Chart) -> Vec<Verdict> {
         ..series.clone()
     };
     let drift: Vec<Series> = drift.series.iter().map(share).collect();
-    let verdict = |method: &str| {
+    let noisy = |method: &str| {
         let variances: Vec<_> = noise.series.iter().filter(|s| s.name.starts_with(method)).map(squared).collect();
-        let shares = drift.iter().filter(|_| method == BOTH).collect::<Vec<_>>();
-        light(method, &variances.iter().collect::<Vec<_>>(), &shares, Worse::Upwards)
+        light(method, &variances.iter().collect::<Vec<_>>(), &[], Worse::Upwards)
     };
-    [BOTH, DIRECT].map(verdict).into()
+    vec![noisy(BOTH), noisy(DIRECT), light(LONG_PATHS, &[], &drift.iter().collect::<Vec<_>>(), Worse::Upwards)]
 }
 
-fn findings(steps: &Steps, [lights, objects, bounces, memory, noise, drift]: [&Chart; 6]) -> Findings {
+/// What the verdicts say of wrong pictures.
+fn becomes_wrong(verdicts: &[Verdict]) -> String {
+    let wrong: Vec<_> = verdicts.iter().filter(|verdict| verdict.has_wrong()).map(|v| v.method.as_str()).collect();
+    if wrong.is_empty() { "nothing becomes wrong".into() } else { format!("wrong somewhere: {}", wrong.join(", ")) }
+}
+
+fn findings(steps: &Steps, wrong: &str, [lights, objects, bounces, memory, noise, drift]: [&Chart; 6]) -> Findings {
     let last = |series: &Series| series.points.last().map_or(f64::NAN, |p| p.y);
     let most = count(f64::from(steps.numbers.last().copied().unwrap_or(0)));
     // Without a GPU there is only the reference.
@@ -188,15 +196,24 @@ fn findings(steps: &Steps, [lights, objects, bounces, memory, noise, drift]: [&C
         let [lights, objects, bounces] = [lights, objects, bounces].map(|chart| last(&chart.series[index]));
         let (lamp, instance) = (bytes("lamps", name), bytes("instances", name));
         let error = share(last(&drift.series[index]));
-        format!("| {name} | {lights:.1} | {objects:.1} | {bounces:.1} | {lamp} | {instance} | {error} |\n")
+        let [lights, objects, bounces] = [lights, objects, bounces].map(|times| format!("{times:.1}"));
+        vec![name.clone(), lights, objects, bounces, lamp, instance, error]
     };
-    let table: String = (0..drift.series.len()).map(row).collect();
+    let columns = [
+        "backend".into(),
+        format!("{most} lamps: times"),
+        format!("{most} instances"),
+        format!("{most} bounces"),
+        "bytes a lamp".into(),
+        "bytes an instance".into(),
+        format!("error of the mean at {most} bounces"),
+    ];
+    let table = Table::new(columns).with_rows((0..drift.series.len()).map(row)).markdown();
     Findings {
         starts: format!(
             "Noise: with direct light alone the deviation of a sample grows from {:.2} with {few} lamps to {:.1} with {most}; with both \
              ways weighted from {:.2} to {:.1}. A ray takes, against one thing alone, and a thing takes in memory:\n\n\
-             | backend | {most} lamps: times | {most} instances | {most} bounces | bytes a lamp | bytes an instance | error of the mean at \
-             {most} bounces |\n|---|---|---|---|---|---|---|\n{table}\nThe noise of lamps, and the error of long paths:",
+             {table}\nThe noise of lamps (their light is held against no truth here), and the error of long paths:",
             first(direct),
             last(direct),
             first(both),
@@ -217,7 +234,7 @@ fn findings(steps: &Steps, [lights, objects, bounces, memory, noise, drift]: [&C
         sees: format!(
             "More noise with more lamps of equal power far apart: to look alike, {most} lamps need {:.0} times the samples of {few} \
              ({:.0} times with `--light-sampling direct`). \
-             Time and memory grow gently; no picture becomes wrong.",
+             Time and memory grow gently; by the verdicts {wrong}.",
             (last(both) / first(both)).powi(2),
             (last(direct) / first(direct)).powi(2),
         ),
@@ -228,6 +245,30 @@ fn findings(steps: &Steps, [lights, objects, bounces, memory, noise, drift]: [&C
 mod tests {
     use super::*;
     use luminaire::scene::Scene;
+
+    /// However noisy the lamps are, an error of long paths is wrong, and is said to be.
+    #[test]
+    fn long_paths_have_a_verdict_of_their_own() {
+        let line = |name: &str, points: &[(f64, f64)]| Series {
+            name: name.into(),
+            points: points.iter().map(|&(x, y)| Point { x, y, error: None }).collect(),
+        };
+        let chart = |series| Chart {
+            name: "c".into(),
+            title: String::new(),
+            x: Axis::log("things"),
+            y: Axis::log("y"),
+            series,
+        };
+        let lamps = [BOTH, DIRECT].map(|name| line(&format!("{name} (cpu)"), &[(1.0, 1.0), (10.0, 50.0)]));
+        let noise = chart(lamps.into());
+        let judged = |drift: f64| verdicts(&noise, &chart(vec![line("cpu", &[(1.0, 1e-7), (10.0, drift)])]));
+        let words = |verdicts: &[Verdict]| verdicts.iter().map(Verdict::in_words).collect::<Vec<_>>();
+        assert_eq!(words(&judged(0.01)), ["● at 1, ▲ beyond", "● at 1, ▲ beyond", "● at 1, ✖ beyond"]);
+        assert_eq!(becomes_wrong(&judged(0.01)), "wrong somewhere: long paths");
+        assert_eq!(words(&judged(1e-6))[2], "●");
+        assert_eq!(becomes_wrong(&judged(1e-6)), "nothing becomes wrong");
+    }
 
     /// Many lamps do not change what is right, long paths lose next to nothing, and choosing both ways is never noisier.
     #[test]
