@@ -374,7 +374,8 @@ fn hashes_have_the_host_s_numbers() {
             .collect()
     };
     let read = |file: &str| std::fs::read_to_string(Path::new(ROOT).join(file)).expect("a source");
-    let host = [read("src/sampling/random.rs"), read("src/sampling/sobol.rs")].map(|text| words(&text)).concat();
+    let files = ["mod", "random", "sampler", "sobol"].map(|name| read(&format!("src/sampling/{name}.rs")));
+    let host = files.map(|text| words(&text)).concat();
     let shader = words(&read("shaders/rng.glsl"));
     assert!(shader.len() >= 10, "{shader:?}");
     for word in shader {
