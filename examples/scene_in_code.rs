@@ -1,6 +1,6 @@
 //! A scene that no file describes, rendered by every backend of this machine; how far apart are the pictures?
 //!
-//! `cargo run --release --example scene_in_code`
+//! `cargo run --release --example scene_in_code`. A program of your own wants `luminaire` and, for the comparison, `luminaire-measure`.
 
 use luminaire::backend::{self, Backend, Request};
 use luminaire::glam::{Affine3A, Vec3};

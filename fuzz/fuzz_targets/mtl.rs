@@ -1,6 +1,7 @@
 //! Whatever is in an MTL file, the mesh loads, and its materials are physical.
 #![no_main]
 
+#[path = "../common/folder.rs"]
 mod folder;
 
 /// The materials that the seeds name.

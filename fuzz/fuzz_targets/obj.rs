@@ -1,6 +1,7 @@
 //! A bare OBJ file of any bytes loads, or says why not.
 #![no_main]
 
+#[path = "../common/folder.rs"]
 mod folder;
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {

@@ -1,6 +1,7 @@
 //! A checkpoint or part of a render of any bytes is read, or refused; what is read can be merged, estimated and gone on from.
 #![no_main]
 
+#[path = "../common/folder.rs"]
 mod folder;
 
 use luminaire::film::{AovSum, Batch, PixelSum, Tile};

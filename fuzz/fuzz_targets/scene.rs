@@ -1,6 +1,7 @@
 //! A scene file of any bytes loads, or says why not; what loads can be traced.
 #![no_main]
 
+#[path = "../common/folder.rs"]
 mod folder;
 
 libfuzzer_sys::fuzz_target!(init: {
