@@ -6,15 +6,9 @@
 //! small bright object.
 
 use super::Film;
+use super::brightness::Brightness;
+use super::error_estimate::ErrorEstimate;
 use rayon::prelude::*;
-
-/// Added to the squared radiance that a squared error is divided by: what is darker than 0.1 counts less.
-pub const REL_MSE_FLOOR: f64 = 0.01;
-
-/// The squared error `off^2` over the squared radiance, so that dark places count less: what relMSE is the mean of.
-pub fn relative_square(off: f64, reference: f64) -> f64 {
-    off * off / (reference * reference + REL_MSE_FLOOR)
-}
 
 /// The truth of 95 % of all values is within so many standard errors: Student's t for 27 degrees of freedom, 3 of each of 9 pixels.
 pub const INTERVAL_95: f64 = 2.052;
@@ -24,37 +18,11 @@ pub const INTERVAL_95: f64 = 2.052;
 const FIREFLY_VARIANCE: f64 = 1.0 / 6.0;
 /// ... and that is so many times its neighbours',
 const FIREFLY_CONTRAST: f64 = 5.0;
-/// or this radiance where they are darker.
+/// or this part of the picture's half-power mean where they are darker.
 const FIREFLY_FLOOR: f64 = 1e-3;
 
-/// Keeps weights finite where nothing varies.
-const TINY: f64 = 1e-30;
-
-/// How far a picture as a whole is from the truth, without its fireflies.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ErrorEstimate {
-    /// Root of the mean square of the error, over pixels and channels.
-    pub rmse: f64,
-    /// Mean of `error^2 / (radiance^2 + 0.01)` over pixels and channels.
-    pub rel_mse: f64,
-    /// Pixels that are left out.
-    pub fireflies: u64,
-    /// `rel_mse` with them, as if their neighbours showed what they should look like. Where it is much larger, the picture either has fireflies or
-    /// has not seen enough of its light.
-    pub rel_mse_with_fireflies: f64,
-}
-
-impl ErrorEstimate {
-    /// The relative error: the root of [`ErrorEstimate::rel_mse`].
-    pub fn relative(&self) -> f64 {
-        self.rel_mse.sqrt()
-    }
-
-    /// The same with the fireflies.
-    pub fn relative_with_fireflies(&self) -> f64 {
-        self.rel_mse_with_fireflies.sqrt()
-    }
-}
+/// A standard error of this part of the picture's half-power mean is none; it keeps weights finite where nothing varies.
+const TINY: f64 = 1e-15;
 
 /// The estimated error of every pixel.
 #[derive(Debug, Clone, PartialEq)]
@@ -62,12 +30,13 @@ pub struct ErrorMap {
     /// Standard error of the mean of each pixel and channel, rows from the top. The truth is within
     /// [`INTERVAL_95`] times that in 19 of 20 pixels.
     pub standard_error: Vec<[f32; 3]>,
-    /// The same over the radiance, or over 0.1 where that is darker: the root mean square of the channels.
+    /// The same relative to the radiance, and to the picture's brightness where it is dark, as [`REL_MSE`](super::REL_MSE) has it: the root mean
+    /// square of the channels. NaN where no error can be told: in pixels with too few samples, and everywhere if `total` is none.
     pub relative: Vec<f32>,
     /// Whether the pixel is a firefly, whose error is estimated from its own parts alone, or has too few finite samples for an estimate.
     pub firefly: Vec<bool>,
-    /// The picture as a whole.
-    pub total: ErrorEstimate,
+    /// The picture as a whole; none if it is black but for its fireflies: what has found no light tells nothing of the light.
+    pub total: Option<ErrorEstimate>,
 }
 
 impl Film {
@@ -76,9 +45,9 @@ impl Film {
         self.measured(pixel).map(|[r, g, b, _]| [r, g, b].map(|channel| channel.variance))
     }
 
-    /// The estimated error of the picture; none if no pixel has samples in two parts.
+    /// The estimated error of the picture; none if no pixel has samples in two parts, or the picture is black but for its fireflies.
     pub fn error(&self) -> Option<ErrorEstimate> {
-        Some(self.error_map()?.total)
+        self.error_map()?.total
     }
 
     /// The estimated error of every pixel; none if no pixel has samples in two parts.
@@ -97,6 +66,9 @@ impl Film {
         };
         let own: Vec<[Measured; 4]> =
             measured.iter().enumerate().map(|(pixel, measured)| measured.unwrap_or_else(|| unknown(pixel))).collect();
+        // What is small is so for this picture, whatever the unit of its light.
+        let half_power_mean = Brightness::of(own.iter().flat_map(colours).map(|m| m.mean)).half_power_mean();
+        let tiny = (TINY * half_power_mean).powi(2).max(f64::MIN_POSITIVE);
         let map = |f: &(dyn Fn(usize) -> [f64; 4] + Sync)| -> Vec<[f64; 4]> {
             (0..own.len()).into_par_iter().map(f).collect()
         };
@@ -106,7 +78,7 @@ impl Film {
             [0, 1, 2, 3].map(|c| {
                 let (mut sum, mut weights) = (0.0, 0.0);
                 for j in self.around(pixel).filter(|j| *j != pixel) {
-                    let weight = 1.0 / (own[j][c].variance + pooled[j][c] + TINY);
+                    let weight = 1.0 / (own[j][c].variance + pooled[j][c] + tiny);
                     sum += weight * own[j][c].mean;
                     weights += weight;
                 }
@@ -117,16 +89,24 @@ impl Film {
             .map(|(([.., grey], [.., expected]), measured)| {
                 measured.is_none()
                     || grey.variance > FIREFLY_VARIANCE * grey.mean * grey.mean
-                        && grey.mean > FIREFLY_CONTRAST * (expected + FIREFLY_FLOOR)
+                        && grey.mean > FIREFLY_CONTRAST * (expected + FIREFLY_FLOOR * half_power_mean)
             })
             .collect();
+
+        let plausible = |pixel: usize| -> [f64; 3] {
+            std::array::from_fn(|c| own[pixel][c].plausible(expected[pixel][c]))
+        };
+        let brightness =
+            Brightness::of((0..own.len()).filter(|pixel| !firefly[*pixel]).flat_map(|pixel| plausible(pixel)));
+        let known = !brightness.is_black();
+        let relative = |variance: f64, radiance: f64| brightness.relative_square(variance.sqrt(), radiance);
 
         let (mut square, mut relative_square, mut left_out, mut counted) = (0.0, 0.0, 0.0, 0u64);
         let mut errors = ErrorMap {
             standard_error: Vec::with_capacity(own.len()),
             relative: Vec::with_capacity(own.len()),
             firefly,
-            total: ErrorEstimate { rmse: 0.0, rel_mse: 0.0, fireflies: 0, rel_mse_with_fireflies: 0.0 },
+            total: None,
         };
         for (pixel, own_here) in own.iter().enumerate() {
             let alone = errors.firefly[pixel];
@@ -135,28 +115,30 @@ impl Film {
             } else {
                 mean_variance(self.around(pixel).filter(|j| !errors.firefly[*j]).map(|j| &own[j]))
             };
-            let scale: [f64; 3] =
-                std::array::from_fn(|c| own_here[c].plausible(expected[pixel][c]).powi(2) + REL_MSE_FLOOR);
-            let channels = 0..3;
+            let radiance = plausible(pixel);
             errors.standard_error.push(std::array::from_fn(|c| variance[c].sqrt() as f32));
-            let relative: f64 = channels.clone().map(|c| variance[c] / scale[c]).sum();
-            errors.relative.push((relative / 3.0).sqrt() as f32);
+            let sum = |of: &dyn Fn(usize) -> f64| (0..3).map(of).sum::<f64>();
+            errors.relative.push(match known && measured[pixel].is_some() {
+                true => (sum(&|c| relative(variance[c], radiance[c])) / 3.0).sqrt() as f32,
+                false => f32::NAN,
+            });
             if alone {
-                let floor = |c: usize| expected[pixel][c].powi(2) + REL_MSE_FLOOR;
-                left_out += channels.map(|c| own_here[c].variance / floor(c)).sum::<f64>();
+                left_out += sum(&|c| relative(own_here[c].variance, expected[pixel][c]));
             } else {
-                counted += 3;
-                square += channels.clone().map(|c| own_here[c].variance).sum::<f64>();
-                relative_square += channels.map(|c| own_here[c].variance / scale[c]).sum::<f64>();
+                counted += 1;
+                square += sum(&|c| own_here[c].variance);
+                relative_square += sum(&|c| relative(own_here[c].variance, radiance[c]));
             }
         }
-        let counted_or_one = counted.max(1) as f64;
-        errors.total = ErrorEstimate {
-            rmse: (square / counted_or_one).sqrt(),
-            rel_mse: relative_square / counted_or_one,
-            fireflies: own.len() as u64 - counted / 3,
-            rel_mse_with_fireflies: (relative_square + left_out) / (3 * own.len()) as f64,
-        };
+        let all = own.len() as u64;
+        let unknown = measured.iter().filter(|measured| measured.is_none()).count() as u64;
+        errors.total = known.then(|| ErrorEstimate {
+            rmse: (square / (3 * counted) as f64).sqrt(),
+            rel_mse: relative_square / (3 * counted) as f64,
+            fireflies: all - counted - unknown,
+            unknown,
+            rel_mse_with_fireflies: (relative_square + left_out) / (3 * (all - unknown)) as f64,
+        });
         Some(errors)
     }
 
@@ -206,6 +188,11 @@ impl Measured {
     }
 }
 
+/// Red, green and blue of a pixel, without their mean.
+fn colours([r, g, b, _]: &[Measured; 4]) -> [Measured; 3] {
+    [*r, *g, *b]
+}
+
 /// Mean of the variances of some pixels, by channel.
 fn mean_variance<'a>(pixels: impl Iterator<Item = &'a [Measured; 4]>) -> [f64; 4] {
     let (mut sum, mut n) = ([0.0; 4], 0.0);
@@ -245,43 +232,74 @@ mod tests {
         // 18 samples: parts of unequal size.
         let (samples, spread) = (18, 0.5);
         let error = film(samples, spread, |_, _| 3.0).error_map().unwrap();
+        let total = error.total.unwrap();
         let expected = 3.0 * spread / 3f64.sqrt() / f64::from(samples).sqrt();
+        // The half-power mean of an even picture is its radiance.
+        let over = (9.0f64 + 0.09).sqrt();
         // 4096 pixels of three degrees of freedom: 1.3 % of the variance, and three times that is allowed.
-        assert!((error.total.rmse / expected - 1.0).abs() < 0.02, "{error:?} {expected}");
-        assert!((error.total.relative() / (expected / 9.01f64.sqrt()) - 1.0).abs() < 0.02);
-        assert_eq!(error.total.fireflies, 0);
+        assert!((total.rmse / expected - 1.0).abs() < 0.02, "{total:?} {expected}");
+        assert!((total.relative() / (expected / over) - 1.0).abs() < 0.02);
+        assert_eq!((total.fireflies, total.unknown), (0, 0));
         let mean: f64 = error.standard_error.iter().map(|e| f64::from(e[1]).powi(2)).sum::<f64>() / 4096.0;
         assert!((mean.sqrt() / expected - 1.0).abs() < 0.02);
         let relative = error.relative.iter().map(|e| f64::from(e * e)).sum::<f64>() / 4096.0;
-        assert!((relative.sqrt() * 9.01f64.sqrt() / expected - 1.0).abs() < 0.02);
+        assert!((relative.sqrt() * over / expected - 1.0).abs() < 0.02);
     }
 
     #[test]
     fn bright_and_dark_areas_keep_their_own_error() {
         let radiance = |x: u32, _| if x < 32 { 0.001 } else { 1000.0 };
         let error = film(16, 0.5, radiance).error_map().unwrap();
+        let total = error.total.unwrap();
         // Away from the border each side has its own.
         assert!(error.standard_error[5][0] < 1e-3 && error.standard_error[60][0] > 10.0);
         let relative = 0.5 / 3f64.sqrt() / 4.0;
-        assert!((error.total.relative() / (relative / 2f64.sqrt()) - 1.0).abs() < 0.03, "{:?}", error.total);
-        assert_eq!(error.total.fireflies, 0);
+        assert!((total.relative() / (relative / 2f64.sqrt()) - 1.0).abs() < 0.03, "{total:?}");
+        assert_eq!(total.fireflies, 0);
     }
 
     #[test]
     fn a_firefly_is_told_apart_and_a_lamp_is_not() {
         let mut film = film(16, 0.5, |x, y| if (x, y) == (40, 40) { 500.0 } else { 1.0 });
-        let before = film.error_map().unwrap();
-        assert_eq!(before.total.fireflies, 0, "a lamp of one pixel, in all parts");
+        let before = film.error().unwrap();
+        assert_eq!(before.fireflies, 0, "a lamp of one pixel, in all parts");
         let at = 20 * SIZE as usize + 20;
         film.sums[at][2][0] += 5000.0;
         let after = film.error_map().unwrap();
-        assert_eq!(after.total.fireflies, 1);
+        let total = after.total.unwrap();
+        assert_eq!((total.fireflies, total.is_mostly_fireflies()), (1, true));
         assert!(after.firefly[at] && after.standard_error[at][0] > 100.0 && after.relative[at] > 1.0);
         assert_eq!(after.standard_error[at + 1][0], {
             let others = film.around(at + 1).filter(|j| *j != at).map(|j| film.measured(j).unwrap()[0].variance);
             (others.sum::<f64>() / 8.0).sqrt() as f32
         });
-        assert!((after.total.relative() / before.total.relative() - 1.0).abs() < 0.01);
+        assert!((total.relative() / before.relative() - 1.0).abs() < 0.01);
+    }
+
+    /// The same film in another unit of light: the same errors, the same fireflies. Powers of two change no digit.
+    #[test]
+    fn the_unit_of_light_does_not_show() {
+        let mut film = film(16, 1.0, |x, y| match (x / 16, y / 16) {
+            (0, _) => 0.0,
+            (1, 0) => 1e-4,
+            (3, 3) => 300.0,
+            _ => 0.02 * f64::from(1 + x % 5),
+        });
+        for (pixel, radiance) in [(700, 1e-3), (1300, 0.5), (2100, 1e4), (3010, 1e-6)] {
+            film.sums[pixel][1] = [4.0 * radiance; 3];
+        }
+        let expected = film.error_map().unwrap();
+        let fireflies = expected.firefly.iter().filter(|firefly| **firefly).count();
+        assert!((2..100).contains(&fireflies), "{fireflies}");
+        for unit in [1e-6f64, 1e6, 1e-30].map(|unit| unit.log2().round().exp2()) {
+            let mut scaled = film.clone();
+            scaled.sums.as_flattened_mut().as_flattened_mut().iter_mut().for_each(|sum| *sum *= unit);
+            let mut found = scaled.error_map().unwrap();
+            let total = found.total.as_mut().unwrap();
+            total.rmse /= unit;
+            assert_eq!(found.total, expected.total, "in units of {unit}");
+            assert_eq!((&found.firefly, &found.relative), (&expected.firefly, &expected.relative), "{unit}");
+        }
     }
 
     #[test]
@@ -291,10 +309,27 @@ mod tests {
         let mut lost = film(8, 0.5, |_, _| 1.0);
         (0..4).for_each(|part| assert_eq!(lost.dropped.insert((77, part), 2), None));
         let errors = lost.error_map().unwrap();
-        assert!(errors.firefly[77] && errors.total.fireflies == 1 && errors.total.rmse > 0.0);
+        let total = errors.total.unwrap();
+        assert!(errors.firefly[77] && errors.relative[77].is_nan() && total.rmse > 0.0);
+        assert_eq!((total.fireflies, total.unknown), (0, 1));
         assert!(errors.standard_error.iter().flatten().all(|e| e.is_finite()));
         let error = film(8, 0.0, |x, _| f64::from(x)).error().unwrap();
-        assert_eq!(error, ErrorEstimate { rmse: 0.0, rel_mse: 0.0, fireflies: 0, rel_mse_with_fireflies: 0.0 });
-        assert_eq!(film(8, 0.0, |_, _| 0.0).error().unwrap().rel_mse, 0.0);
+        let nothing = ErrorEstimate { rmse: 0.0, rel_mse: 0.0, fireflies: 0, unknown: 0, rel_mse_with_fireflies: 0.0 };
+        assert_eq!(error, nothing);
+    }
+
+    #[test]
+    fn a_black_picture_has_no_estimate() {
+        let mut black = film(16, 0.5, |_, _| 0.0);
+        let errors = black.error_map().unwrap();
+        assert_eq!((errors.total, black.error()), (None, None));
+        assert!(errors.relative.iter().all(|e| e.is_nan()) && errors.standard_error.iter().flatten().all(|e| *e == 0.0));
+        // One sample of all has found light: that is no picture yet.
+        black.sums[500][2] = [1e-5; 3];
+        let errors = black.error_map().unwrap();
+        assert!(errors.total.is_none() && errors.firefly[500]);
+        // A lamp in the black, in all parts: what is seen is known.
+        black.sums[500] = [[1e-5; 3]; 4];
+        assert_eq!(black.error().map(|error| (error.rel_mse, error.fireflies)), Some((0.0, 0)));
     }
 }

@@ -2,12 +2,16 @@
 
 mod aov;
 mod batch;
+mod brightness;
 mod error;
+mod error_estimate;
 mod output;
 
 pub use aov::{AovSum, Aovs};
 pub use batch::{Batch, MOST_RADIANCE, PixelSum, Rays, SampleId, Tile};
-pub use error::{ErrorEstimate, ErrorMap, INTERVAL_95, REL_MSE_FLOOR, relative_square};
+pub use brightness::{Brightness, REL_MSE};
+pub use error::{ErrorMap, INTERVAL_95};
+pub use error_estimate::{ErrorEstimate, relative_in_words};
 
 use crate::sampling::PARTS;
 use crate::{Error, Result};

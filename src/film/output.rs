@@ -52,7 +52,7 @@ fn encode_exr<'a>(
     let (linear, errors) = (film.to_linear(), film.error_map());
     attributes.push(("samplesPerPixel", Attribute::Number(f64::from(film.least_samples()))));
     attributes.push(("droppedSamples", Attribute::Number(film.dropped.values().copied().map(f64::from).sum())));
-    if let Some(ErrorEstimate { rmse, rel_mse, fireflies, .. }) = errors.as_ref().map(|errors| errors.total) {
+    if let Some(ErrorEstimate { rmse, rel_mse, fireflies, .. }) = errors.as_ref().and_then(|errors| errors.total) {
         attributes.push(("estimatedRMSE", Attribute::Number(rmse)));
         attributes.push(("estimatedRelMSE", Attribute::Number(rel_mse)));
         attributes.push(("fireflies", Attribute::Number(fireflies as f64)));

@@ -18,7 +18,7 @@ mod tracer;
 
 pub use aovs::aovs;
 pub use budget::{Budget, Pace};
-pub use progress::{LEAST_FOR_NOISE, Limits, Progress};
+pub use progress::{LEAST_FOR_NOISE, Limits, MOST_WITHOUT_ESTIMATE, Progress};
 pub use rendered::{DROPPED_NAMED, End, Rendered};
 pub use run::Run;
 pub(crate) use schedule::is_a_pass;
@@ -86,15 +86,21 @@ pub fn resume(
             break;
         }
         run.set_seconds(elapsed());
-        let mut quiet = false;
+        let (mut quiet, mut unknown) = (false, false);
         if let Some(limit) = limits.noise.filter(|_| run.is_at_noise_aim()) {
             quiet = run.is_quiet_enough(limit);
+            let rendered = run.rendered();
+            unknown = rendered.progress.error.is_none() && rendered.film.least_samples() >= MOST_WITHOUT_ESTIMATE;
         } else if run.is_between_passes() && run.estimate_is_due() {
             run.estimate();
         }
         watch(run.rendered());
         if quiet {
             end = End::Noise;
+            break;
+        }
+        if unknown {
+            end = End::NoEstimate;
             break;
         }
     }
@@ -329,5 +335,31 @@ mod tests {
             films.push(rendered.film);
         }
         assert!(films.iter().all(|film| *film == films[0]));
+    }
+
+    /// No light, and a limit of the noise: there is nothing to estimate, and the render ends all the same.
+    #[test]
+    fn a_picture_without_light_ends_without_an_estimate() {
+        struct Dark;
+        impl Tracer for Dark {
+            fn trace(&mut self, batch: &Batch) -> Result<Traced> {
+                let sums = vec![PixelSum::default(); batch.tile.pixels() * batch.groups() as usize];
+                Ok(Traced { sums, dropped: vec![], device_seconds: None })
+            }
+            fn aovs(&mut self, _: Tile, _: Range<u32>) -> Result<Vec<AovSum>> {
+                Ok(vec![])
+            }
+            fn max_sums(&self) -> usize {
+                1 << 20
+            }
+            fn batch_seconds(&self) -> f64 {
+                1e9
+            }
+        }
+        let limits = Limits { noise: Some(0.5), ..Limits::default() };
+        let rendered = render(&mut Dark, (16, 16), limits, &mut |_| {}, &AtomicBool::new(false)).unwrap();
+        assert!(matches!(rendered.end, End::NoEstimate), "{:?}", rendered.end);
+        assert_eq!((rendered.progress.error, rendered.film.most_samples()), (None, MOST_WITHOUT_ESTIMATE));
+        assert_eq!(rendered.film.black_share(), Some(1.0));
     }
 }

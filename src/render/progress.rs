@@ -10,10 +10,14 @@ pub struct Limits {
     pub spp: Option<u32>,
     /// Seconds of wall-clock time, over all runs of a render, met at the next end of a batch.
     pub seconds: Option<f64>,
-    /// Estimated relative error ([`ErrorEstimate::relative`](crate::film::ErrorEstimate::relative)), met when all pixels have equally
-    /// many samples, at least [`LEAST_FOR_NOISE`].
+    /// Estimated relative error without the fireflies ([`ErrorEstimate::relative`](crate::film::ErrorEstimate::relative)), met when all pixels
+    /// have equally many samples, at least [`LEAST_FOR_NOISE`]. Where there is no estimate ([`MOST_WITHOUT_ESTIMATE`]) it ends the render, too.
     pub noise: Option<f64>,
 }
+
+/// A limit of the noise ends a render without being met after this many samples a pixel if there is still nothing to estimate: the picture is black
+/// but for fireflies, or every sample was lost.
+pub const MOST_WITHOUT_ESTIMATE: u32 = 256 * PARTS;
 
 /// No noise limit is met before this many samples a pixel: fewer may all have missed the same light.
 pub const LEAST_FOR_NOISE: u32 = 8 * PARTS;

@@ -15,8 +15,11 @@ pub enum End {
     Samples,
     /// The time was up.
     Time,
-    /// The estimated error is below the limit.
+    /// The estimated error, without the fireflies, is below the limit.
     Noise,
+    /// There was a limit of the noise, but after [`MOST_WITHOUT_ESTIMATE`](super::MOST_WITHOUT_ESTIMATE) samples a pixel still nothing to
+    /// estimate: the picture is black but for fireflies, or every sample was lost.
+    NoEstimate,
     /// `stop` was set.
     Stopped,
     /// The tracer failed; what it had done before is on the film.
@@ -91,7 +94,7 @@ impl Rendered {
     /// [`Rendered::noise_aim`] samples.
     pub(super) fn quiet_enough(&mut self, limit: f64) -> bool {
         self.progress.error = self.film.error();
-        // No estimate at all: every sample was lost.
+        // No estimate at all: no light was found, or every sample was lost.
         let relative = self.progress.error.map_or(f64::INFINITY, |error| error.relative());
         if relative > limit {
             self.noise_aim = samples_to_reach(self.noise_aim, relative, limit);

@@ -3,7 +3,7 @@
 use super::*;
 use crate::common::scenes::*;
 use glam::{Affine3A, Vec3};
-use luminaire::film::{Batch, Tile, relative_square};
+use luminaire::film::{Batch, Tile};
 use luminaire::render::{End, Limits, Tracer, render};
 use luminaire::scene::{Luminaire, Scene};
 use std::sync::atomic::AtomicBool;
@@ -89,9 +89,9 @@ fn a_noise_limit_is_met() {
         let fireflies = rendered.film.error_map().expect("an estimate").firefly;
         let pixels = (0..truth.pixels()).filter(|pixel| !fireflies[*pixel]);
         let values = pixels.flat_map(|pixel| std::iter::zip(rendered.film.mean(pixel), truth.mean(pixel)));
-        let (mut sum, mut n) = (0.0, 0.0);
+        let (mut sum, mut n, brightness) = (0.0, 0.0, truth.brightness());
         for (found, expected) in values {
-            sum += relative_square(found - expected, expected);
+            sum += brightness.relative_square(found - expected, expected);
             n += 1.0;
         }
         let relative = (sum / n).sqrt();

@@ -2,7 +2,7 @@
 
 use super::statistics::Estimate;
 use luminaire::Result;
-use luminaire::film::{Film, INTERVAL_95, relative_square};
+use luminaire::film::{Film, INTERVAL_95};
 use luminaire::render::{End, Limits, Tracer, render};
 use luminaire::scene::Scene;
 use std::sync::atomic::AtomicBool;
@@ -45,7 +45,7 @@ impl Calibration {
 /// If a tracer cannot be had, or fails.
 ///
 /// # Panics
-/// If there are fewer than two samples a pixel.
+/// If there are fewer than two samples a pixel, or there is no light.
 pub fn calibrate(
     open: &dyn Fn(&Scene) -> Result<Box<dyn Tracer>>,
     scene: &Scene,
@@ -68,6 +68,7 @@ pub fn calibrate(
     // Of each pixel by itself: beside a small lamp its neighbours' would be far too much.
     let truth_variance: Vec<[f64; 3]> =
         (0..truth.pixels()).map(|pixel| truth.variance(pixel).expect("many samples")).collect();
+    let brightness = truth.brightness();
     let mut found = vec![];
     for &spp in spp {
         let mut c = Calibration {
@@ -83,6 +84,7 @@ pub fn calibrate(
         for seed in FIRST_SEED..FIRST_SEED + seeds {
             let film = picture(seed, spp)?;
             let errors = film.error_map().expect("several samples a pixel");
+            let total = errors.total.expect("there is light");
             let (mut square, mut relative, mut all_relative) = (0.0, 0.0, 0.0);
             for (pixel, (estimated, own)) in std::iter::zip(&errors.standard_error, &truth_variance).enumerate() {
                 let pairs = std::iter::zip(film.mean(pixel), truth.mean(pixel));
@@ -90,8 +92,8 @@ pub fn calibrate(
                 for ((found, expected), (estimated, own)) in pairs.zip(variances) {
                     let estimated = f64::from(*estimated).powi(2);
                     let off = (found - expected).powi(2);
-                    let relative_here =
-                        relative_square(found - expected, expected) - relative_square(own.sqrt(), expected);
+                    let relative_here = brightness.relative_square(found - expected, expected)
+                        - brightness.relative_square(own.sqrt(), expected);
                     all_relative += relative_here;
                     if !errors.firefly[pixel] {
                         square += off - own;
@@ -101,11 +103,12 @@ pub fn calibrate(
                     }
                 }
             }
-            let counted = 3.0 * (film.pixels() as u64 - errors.total.fireflies) as f64;
-            c.ratios.push(errors.total.rel_mse * counted / relative);
-            c.mse_ratios.push(errors.total.rmse.powi(2) * counted / square);
+            let left_out = (total.fireflies + total.unknown) as f64;
+            let counted = 3.0 * (film.pixels() as f64 - left_out);
+            c.ratios.push(total.rel_mse * counted / relative);
+            c.mse_ratios.push(total.rmse.powi(2) * counted / square);
             c.rel_mse += relative / counted / f64::from(seeds);
-            c.fireflies += errors.total.fireflies as f64 / film.pixels() as f64 / f64::from(seeds);
+            c.fireflies += left_out / film.pixels() as f64 / f64::from(seeds);
             let with = all_relative / (3 * film.pixels()) as f64;
             c.with_fireflies += with / (relative / counted) / f64::from(seeds);
         }

@@ -1,6 +1,6 @@
 //! How far a picture is from a reference, in numbers.
 
-use luminaire::film;
+use luminaire::film::Brightness;
 use luminaire::picture::Picture;
 use luminaire::{Error, Result};
 
@@ -58,8 +58,11 @@ pub struct Comparison {
     pub pixels: u64,
     /// Root of the mean squared difference, in units of the pictures.
     pub rmse: f64,
-    /// Mean of `(a - b)^2 / (b^2 + 0.01)`.
+    /// relMSE, as [`REL_MSE`](luminaire::film::REL_MSE) defines it: whatever the unit of the radiance. Infinite where the reference is black and the picture
+    /// is not.
     pub relmse: f64,
+    /// The half-power mean of the reference, by which relMSE measures what is dark; 0 if it is black.
+    pub half_power_mean: f64,
     /// Bias of red, green and blue.
     pub bias: [Bias; 3],
     /// Where the standard errors in `bias` come from.
@@ -88,6 +91,7 @@ pub fn compare(image: &Picture, reference: &Picture, worst: usize) -> Result<Com
     let pairs = || image.rgb.iter().zip(&reference.rgb).enumerate().filter(|(_, (a, b))| finite(a) && finite(b));
     let pixels = pairs().count();
     let n = pixels as f64;
+    let brightness = brightness(reference);
     let (mut squares, mut relative) = ([0.0; 3], 0.0);
     let (mut differences, mut means) = ([0.0; 3], [0.0; 3]);
     let mut worst_pixels: Vec<(f64, usize)> = Vec::with_capacity(worst.min(pixels) + 1);
@@ -98,7 +102,7 @@ pub fn compare(image: &Picture, reference: &Picture, worst: usize) -> Result<Com
             differences[channel] += d;
             means[channel] += f64::from(b[channel]) / n;
         }
-        let here = relative_squares(a, b);
+        let here = relative_squares(a, b, brightness);
         relative += here;
         let place = worst_pixels.partition_point(|(square, _)| *square >= here);
         if here > 0.0 && place < worst {
@@ -116,17 +120,20 @@ pub fn compare(image: &Picture, reference: &Picture, worst: usize) -> Result<Com
         Bias { difference, error, ratio }
     });
     let width = image.width as usize;
+    let infinite = pairs().filter(|(_, (a, b))| relative_squares(a, b, brightness).is_infinite()).count();
     let worst = worst_pixels.iter().map(|&(square, i)| WorstPixel {
         x: (i % width) as u32,
         y: (i / width) as u32,
         image: image.rgb[i],
         reference: reference.rgb[i],
-        share: square / relative,
+        // In a black reference everything is infinitely wrong alike.
+        share: if relative.is_finite() { square / relative } else { 1.0 / infinite as f64 },
     });
     Ok(Comparison {
         pixels: pixels as u64,
         rmse: (squares.iter().sum::<f64>() / (3.0 * n)).sqrt(),
         relmse: relative / (3.0 * n),
+        half_power_mean: brightness.half_power_mean(),
         bias,
         error_source: if variance.is_some() { ErrorSource::Pictures } else { ErrorSource::Spread },
         expected_rmse: variance.map(|sums| (sums.iter().sum::<f64>() / (3.0 * n)).sqrt()),
@@ -136,17 +143,16 @@ pub fn compare(image: &Picture, reference: &Picture, worst: usize) -> Result<Com
     })
 }
 
-/// How far each pixel is off relative to the reference: the root of the mean over its channels of `(a - b)^2 / (b^2 + 0.01)`, of which relMSE is the
-/// mean square. NaN where either is not finite.
+/// How far each pixel is off relative to the reference: the root of the mean over its channels of what relMSE is the mean of
+/// ([`REL_MSE`](luminaire::film::REL_MSE)). NaN where either is not finite.
 ///
 /// # Panics
 /// If the pictures do not have the same number of pixels.
 pub fn relative_errors(image: &Picture, reference: &Picture) -> Vec<f32> {
     assert_eq!(image.rgb.len(), reference.rgb.len());
-    let pairs = image.rgb.iter().zip(&reference.rgb);
-    pairs
-        .map(|(a, b)| if finite(a) && finite(b) { (relative_squares(a, b) / 3.0).sqrt() as f32 } else { f32::NAN })
-        .collect()
+    let (brightness, pairs) = (brightness(reference), image.rgb.iter().zip(&reference.rgb));
+    let relative = |a, b| (relative_squares(a, b, brightness) / 3.0).sqrt() as f32;
+    pairs.map(|(a, b)| if finite(a) && finite(b) { relative(a, b) } else { f32::NAN }).collect()
 }
 
 /// Whether a pixel is a number in all channels.
@@ -154,10 +160,15 @@ pub fn finite(pixel: &[f32; 3]) -> bool {
     pixel.iter().all(|v| v.is_finite())
 }
 
+/// How bright a picture is, by its finite pixels.
+pub fn brightness(picture: &Picture) -> Brightness {
+    Brightness::of(picture.rgb.iter().filter(|pixel| finite(pixel)).flatten().map(|v| f64::from(*v)))
+}
+
 /// The sum over the channels.
-fn relative_squares(a: &[f32; 3], b: &[f32; 3]) -> f64 {
+fn relative_squares(a: &[f32; 3], b: &[f32; 3], brightness: Brightness) -> f64 {
     let channels = a.iter().zip(b).map(|(a, b)| (f64::from(*a), f64::from(*b)));
-    channels.map(|(a, b)| film::relative_square(a - b, b)).sum()
+    channels.map(|(a, b)| brightness.relative_square(a - b, b)).sum()
 }
 
 /// The sum of the variances of both pictures over some pixels, by channel; none unless all of them are known.
@@ -199,7 +210,11 @@ mod tests {
         let found = compare(&image, &reference, 5).unwrap();
         assert_eq!(found.pixels, 2);
         near(found.rmse, ((0.01 + 1.0 + 1.0 + 4.0) / 6.0f64).sqrt());
-        let (first, second) = (0.01 / 0.01 + 1.0 / 1.01, 1.0 / 9.01 + 4.0 / 0.01);
+        // The reference's roots are 1, 1 and twice the root of 3.
+        let m = ((2.0 + 2.0 * 3f64.sqrt()) / 6.0).powi(2);
+        near(found.half_power_mean, m);
+        let dark = m * m / 100.0;
+        let (first, second) = (0.01 / dark + 1.0 / (1.0 + dark), 1.0 / (9.0 + dark) + 4.0 / dark);
         near(found.relmse, (first + second) / 6.0);
         near(found.bias[0].difference, 0.05);
         near(found.bias[0].ratio, 0.1);
@@ -227,7 +242,28 @@ mod tests {
         assert_eq!((found.rmse, found.relmse, &found.worst[..]), (0.0, 0.0, &[][..]));
         assert_eq!(found.bias, [Bias { difference: 0.0, error: 0.0, ratio: 0.0 }; 3]);
         let lit = picture(1, &[[0.0; 3], [1.0, 0.0, 0.0]]);
-        assert_eq!(compare(&lit, &black, 5).unwrap().bias[0].ratio, f64::INFINITY);
+        let found = compare(&lit, &black, 5).unwrap();
+        assert_eq!((found.bias[0].ratio, found.relmse), (f64::INFINITY, f64::INFINITY));
+        assert_eq!((found.half_power_mean, found.worst.len(), found.worst[0].share), (0.0, 1, 1.0));
+        assert_eq!(relative_errors(&lit, &black), [0.0, f32::INFINITY]);
+    }
+
+    #[test]
+    fn the_unit_of_light_does_not_show() {
+        let pictures = |unit: f32| {
+            let scaled = |rgb: [f32; 3]| rgb.map(|v| v * unit);
+            let reference = picture(2, &[[0.0, 1.0, 3.0], [1.0, 3.0, 0.0]].map(scaled));
+            (picture(2, &[[0.1, 2.0, 3.0], [1.0, 2.0, 2.0]].map(scaled)), reference)
+        };
+        let (image, reference) = pictures(1.0);
+        let expected = compare(&image, &reference, 5).unwrap();
+        for unit in [1e-6, 1e6, 1e-30] {
+            let (image, reference) = pictures(unit);
+            let found = compare(&image, &reference, 5).unwrap();
+            near(found.relmse, expected.relmse);
+            near(found.rmse / f64::from(unit), expected.rmse);
+            near(found.worst[0].share, expected.worst[0].share);
+        }
     }
 
     #[test]

@@ -1,13 +1,13 @@
 //! What each stage of the lecture buys, as error times time.
 //!
-//! Every estimator renders the same small picture in turn, several times with other samples; the error is the mean of
-//! `(a - b)^2 / (b^2 + 0.01)` over pixels and channels (relMSE), against a picture of many samples by the default estimator. Error falls
-//! as one over time, so that their product does not depend on the number of samples: half of it is twice as fast.
+//! Every estimator renders the same small picture in turn, several times with other samples; the error is relMSE
+//! ([`luminaire::film::REL_MSE`]) against a picture of many samples by the default estimator. Error falls as one over time, so that their
+//! product does not depend on the number of samples: half of it is twice as fast.
 
 use crate::tables::Folder;
 use crate::{Effort, Texts};
 use luminaire::backend::Backend;
-use luminaire::film::{Batch, Tile, relative_square};
+use luminaire::film::{Batch, Brightness, Tile};
 use luminaire::render::Tracer;
 use luminaire::scene::{
     self, AreaSampling, Directions, Estimator, Extinction, Integrator, LightSampling, PRESETS, Sampler, Scene,
@@ -53,8 +53,9 @@ fn picture(tracer: &mut dyn Tracer, samples: std::ops::Range<u32>) -> luminaire:
 }
 
 fn relative_mse(found: &[[f64; 3]], expected: &[[f64; 3]]) -> f64 {
+    let brightness = Brightness::of(expected.iter().flatten().copied());
     let pairs = found.iter().flatten().zip(expected.iter().flatten());
-    pairs.map(|(a, b)| relative_square(a - b, *b)).sum::<f64>() / (3 * found.len()) as f64
+    pairs.map(|(a, b)| brightness.relative_square(a - b, *b)).sum::<f64>() / (3 * found.len()) as f64
 }
 
 /// An estimator of the table.

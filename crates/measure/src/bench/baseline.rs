@@ -115,6 +115,7 @@ impl Baseline {
         let cores = |m: &Machine| format!("{} ({} threads)", m.processor, m.threads);
         check("the processor", cores(was), cores(is), devices);
         let other = "figures under the same name may be of different work";
+        check("relMSE", self.run.relmse.clone(), report.run.relmse.clone(), "the figures of relMSE are not compared");
         check("the effort", format!("{:?}", self.run.effort), format!("{:?}", report.run.effort), other);
         for scene in &report.run.scenes {
             if let Some(before) = self.run.scenes.iter().find(|before| before.name == scene.name) {
@@ -125,9 +126,15 @@ impl Baseline {
         warnings
     }
 
-    /// The figures that both runs have, in the order of the run now.
+    /// Whether a figure of the two runs is of the same quantity: relMSE is so only by the same definition.
+    fn is_comparable(&self, figure: &Figure, report: &Report) -> bool {
+        self.run.relmse == report.run.relmse || !FigureName::parse(&figure.name).quantity.starts_with("relmse")
+    }
+
+    /// The figures that both runs have and that mean the same in both, in the order of the run now.
     pub fn changes(&self, report: &Report) -> Vec<Change> {
-        let before: BTreeMap<&str, &Figure> = self.figures.iter().map(|figure| (&figure.name[..], figure)).collect();
+        let comparable = self.figures.iter().filter(|figure| self.is_comparable(figure, report));
+        let before: BTreeMap<&str, &Figure> = comparable.map(|figure| (&figure.name[..], figure)).collect();
         let both = report.figures().filter_map(|now| before.get(&now.name[..]).map(|before| (*before, now)));
         both.map(|(before, now)| Change { before: before.clone(), now: now.clone(), verdict: judge(before, now) })
             .collect()

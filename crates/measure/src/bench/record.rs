@@ -4,6 +4,7 @@ use super::effort::Effort;
 use super::figure::Figure;
 use super::settings::Settings;
 use crate::Workbench;
+use luminaire::film::REL_MSE;
 use serde::{Deserialize, Serialize};
 
 /// Where a run took place.
@@ -60,6 +61,14 @@ pub(super) struct Run {
     pub budget_seconds: f64,
     pub estimators: Vec<String>,
     pub scenes: Vec<SceneRecord>,
+    /// What relMSE is ([`REL_MSE`]). Runs from before it was written down had a fixed 0.01 in the place of `(m/10)^2`.
+    #[serde(default = "fixed_floor")]
+    pub relmse: String,
+}
+
+/// What relMSE was before the record said what it is.
+fn fixed_floor() -> String {
+    "mean of (a - b)^2 / (b^2 + 0.01)".into()
 }
 
 impl Run {
@@ -78,6 +87,7 @@ impl Run {
             budget_seconds: settings.effort.budget_seconds(),
             estimators: settings.estimators.clone(),
             scenes: scenes.collect(),
+            relmse: REL_MSE.into(),
         }
     }
 }

@@ -5,7 +5,6 @@ use crate::bench::renders::{picture, render_samples, warm_up};
 use crate::{Workbench, metrics};
 use luminaire::Result;
 use luminaire::backend::Backend;
-use luminaire::film::relative_square;
 use luminaire::picture::Picture;
 use luminaire::scene::Scene;
 
@@ -22,9 +21,10 @@ impl Reference {
     /// A file's picture, whose error is known if it holds standard errors.
     pub fn given(picture: &Picture) -> Self {
         let own_error = picture.error.as_ref().and_then(|errors| {
+            let brightness = metrics::brightness(picture);
+            let relative = |error: f32, radiance: f32| brightness.relative_square(error.into(), radiance.into());
             let pairs = errors.iter().zip(&picture.rgb).filter(|(e, b)| metrics::finite(e) && metrics::finite(b));
-            let all: Vec<f64> =
-                pairs.flat_map(|(e, b)| (0..3).map(|c| relative_square(f64::from(e[c]), f64::from(b[c])))).collect();
+            let all: Vec<f64> = pairs.flat_map(|(e, b)| (0..3).map(move |c| (e[c], b[c]))).map(|(e, b)| relative(e, b)).collect();
             (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64)
         });
         Reference { picture: picture.clone(), own_error, words: "the picture that was given".into() }

@@ -15,6 +15,7 @@ use crate::chart::{Axis, Chart, FRONT, Point, Series};
 use crate::report::table::Table;
 use crate::report::words::number;
 use luminaire::Result;
+use luminaire::film::REL_MSE;
 
 /// The section of errors over time and samples.
 pub(in crate::bench) const DEFINITION: Definition =
@@ -35,7 +36,7 @@ fn run(bench: &Workbench, settings: &Settings, progress: Progress) -> Result<Sec
         settings.rounds
     );
     let explained = format!(
-        "relMSE is the mean over pixels and channels of (a - b)^2 / (b^2 + 0.01), averaged over the rounds, with two standard errors as bars; the \
+        "relMSE, the {REL_MSE} (over pixels and channels; b is the reference), is averaged over the rounds, with two standard errors as bars; the \
          reference's own estimated error is taken off. Lower and further left is better. The dashed line is the Pareto front: nothing else has an \
          error as small in the same time ({:.0} % count as a difference). Over samples the backend does not matter, as all draw the same numbers; one that \
          got furthest stands for all. relMSE times seconds is what an error costs: half of it is twice as fast. For independent \
