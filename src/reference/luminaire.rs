@@ -19,17 +19,17 @@ pub const NEAR: f64 = 0.05;
 pub const LEAST_SOLID_ANGLE: f64 = 1e-3;
 
 /// Light that would arrive from a luminaire if nothing were between.
-struct Unoccluded {
+pub(super) struct Unoccluded {
     /// Unit direction to the luminaire.
-    wi: DVec3,
+    pub(super) wi: DVec3,
     /// Irradiance on a surface perpendicular to `wi`, over the probability of this sample.
-    irradiance: DVec3,
+    pub(super) irradiance: DVec3,
     /// Density of `wi`, per steradian, the choice of the luminaire included; none where no other ray can find the luminaire.
     pdf: Option<f64>,
     /// The shadow ray.
-    origin: DVec3,
-    direction: DVec3,
-    t_max: f64,
+    pub(super) origin: DVec3,
+    pub(super) direction: DVec3,
+    pub(super) t_max: f64,
 }
 
 impl Reference {
@@ -72,7 +72,7 @@ impl Reference {
     }
 
     /// Chooses a luminaire and a point on it.
-    fn sample_luminaire(&self, surfel: &Surfel, random: [u32; 4]) -> Option<Unoccluded> {
+    pub(super) fn sample_luminaire(&self, surfel: &Surfel, random: [u32; 4]) -> Option<Unoccluded> {
         if self.luminaires.entries.is_empty() {
             return None;
         }

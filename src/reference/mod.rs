@@ -12,6 +12,7 @@
 //! | Impulse Reflection, Adding Transmission | [`impulse`]: `fresnel`, `refract`, `impulses` |
 //! | Intersection Problems | [`intersect`], [`surfel`]: `offset_ray_origin` |
 //! | Sensor Modelling | [`sensor`]: `sensor_ray` |
+//! | (what no estimator of the lecture finds) | [`lost_light`] |
 //! | Path Trace Function, A Simple Raytracer, Albedo Termination | [`path`]: `radiance` |
 
 mod aov;
@@ -21,6 +22,7 @@ pub mod hit;
 pub mod impulse;
 mod instance;
 pub mod intersect;
+pub mod lost_light;
 pub mod luminaire;
 pub mod path;
 mod prepared_scene;

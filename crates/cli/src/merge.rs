@@ -1,7 +1,7 @@
 //! `luminaire merge`.
 
-use crate::shared::printing::print;
-use crate::shared::units::percent;
+use crate::shared::error_line::{black_picture, error_line};
+use crate::shared::printing::{print, warn};
 use crate::shared::values::stops;
 use luminaire::{Error, Result, files, part, picture};
 use std::path::PathBuf;
@@ -62,8 +62,9 @@ pub fn run(options: &Options) -> Result<ExitCode> {
             if options.parts.len() == 1 { "" } else { "s" }
         );
     }
-    if let Some(error) = whole.progress.error {
-        text += &format!("estimated error {} (RMSE {:.3e})\n", percent(error.relative()), error.rmse);
+    text += &error_line(&whole.film, whole.progress.error, false);
+    if let Some(black) = black_picture(&whole.film, false) {
+        warn(black);
     }
     print(&text)?;
     Ok(ExitCode::SUCCESS)

@@ -7,6 +7,7 @@ use crate::shared::printing::warn;
 use crate::shared::values::stops;
 use luminaire::Result;
 use luminaire::film::Film;
+use luminaire::reference::lost_light::lost_light;
 use luminaire::scene;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -81,6 +82,8 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     options.estimator.apply(&mut scene)?;
     scene.settings.seed = options.seed.unwrap_or(scene.settings.seed);
     scene.settings.exposure = options.exposure.unwrap_or(scene.settings.exposure);
+    let lost = lost_light(&scene);
+    scene.warnings.extend(lost);
     scene.warnings.iter().for_each(warn);
     luminaire_view::run(luminaire_view::Options { scene, request, spp: options.spp.unwrap_or(u32::MAX) })?;
     Ok(ExitCode::SUCCESS)

@@ -43,7 +43,8 @@ pub struct Options {
     /// Fail above this root-mean-square error, in units of the pictures.
     #[arg(long, value_name = "X", allow_negative_numbers = true, value_parser = limit, help_heading = "Limits")]
     max_rmse: Option<f64>,
-    /// Fail above this relMSE, the mean of (a - b)^2 / (b^2 + 0.01).
+    /// Fail above this relMSE, the mean of (a - b)^2 / (b^2 + (m/10)^2), m the half-power mean of b, the reference: it does not depend on the unit of
+    /// the pictures.
     #[arg(long, value_name = "X", allow_negative_numbers = true, value_parser = limit, help_heading = "Limits")]
     max_relmse: Option<f64>,
     /// Fail if the mean of a channel is off by more than this part of the reference's; 0.01 is 1 %.
@@ -154,6 +155,12 @@ fn warn_of_pitfalls(options: &Options, image: &Picture, reference: &Picture, com
     if comparison.reference_non_finite.count > 0 {
         let odd = non_finite(comparison.reference_non_finite);
         warn(format_args!("{}: {odd}; they are left out", options.reference.display()));
+    }
+    if comparison.pixels > 0 && comparison.half_power_mean == 0.0 {
+        warn(format_args!(
+            "{} is black: there is no light that an error could be relative to",
+            options.reference.display()
+        ));
     }
     if image.clamped != reference.clamped {
         let clamped = if image.clamped { &options.image } else { &options.reference };

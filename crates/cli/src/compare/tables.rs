@@ -2,6 +2,7 @@
 
 use super::flip::{Exposures, Flip};
 use crate::shared::table::table;
+use luminaire::film::REL_MSE;
 use luminaire::picture::Picture;
 use luminaire_measure::metrics::{Comparison, ErrorSource};
 use std::path::Path;
@@ -29,7 +30,11 @@ pub fn describe(image: Source, reference: Source, comparison: &Comparison, flip:
     });
     let mut rows = vec![
         vec!["RMSE".into(), number(comparison.rmse), expected],
-        vec!["relMSE".into(), number(comparison.relmse), "mean of (a - b)^2 / (b^2 + 0.01)".into()],
+        vec![
+            "relMSE".into(),
+            number(comparison.relmse),
+            format!("{REL_MSE}, {}", number(comparison.half_power_mean)),
+        ],
     ];
     let source = match comparison.error_source {
         ErrorSource::Pictures => "the standard errors in the files",

@@ -8,6 +8,7 @@ use crate::shared::printing::print;
 use crate::shared::table::table;
 use luminaire::Result;
 use luminaire::gpu::specialization::KernelModel;
+use luminaire::reference::lost_light::lost_light;
 use luminaire::scene::{self, Environment, Mesh, Projection, Scene};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -35,7 +36,10 @@ pub struct Options {
 
 /// Loads a scene and prints what is in it.
 pub fn run(options: &Options) -> Result<ExitCode> {
-    print(&describe(&scene::load(&options.scene)?))?;
+    let mut scene = scene::load(&options.scene)?;
+    let lost = lost_light(&scene);
+    scene.warnings.extend(lost);
+    print(&describe(&scene))?;
     Ok(ExitCode::SUCCESS)
 }
 

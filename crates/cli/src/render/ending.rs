@@ -2,10 +2,12 @@
 
 use super::outcome::Outcome;
 use super::{outputs, summary};
+use crate::shared::error_line;
 use crate::shared::exit_codes::{DEVICE_FAILED, INTERRUPTED};
 use crate::shared::interrupts;
 use crate::shared::printing::{self, Notes, print};
 use luminaire::Result;
+use luminaire::picture::Format;
 use luminaire::render::{End, Rendered};
 use luminaire::scene::Scene;
 use std::path::PathBuf;
@@ -19,8 +21,16 @@ pub fn finish(mut outcome: Outcome, pictures: &[PathBuf], notes: Notes) -> Resul
     // An unfinished part is not written where the checkpoint holds it: somebody might take the file for the whole part.
     let nothing = rendered.progress.samples == 0 || unfinished_part && outcome.saved.is_some();
     let written = if nothing { &[] } else { pictures };
-    warn_of_losses(rendered, outcome.scene, notes);
-    warn_of_black_pixels(rendered, written, notes);
+    outcome.warnings = [
+        losses(rendered, outcome.scene),
+        pixels_without_samples(rendered, written),
+        black(&outcome, written),
+        reached_without_fireflies(rendered),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    outcome.warnings.iter().for_each(|warning| notes.warn(warning));
 
     let done = interrupts::hold_off(|| outputs::write(&mut outcome, written));
     let saved = outcome.saved.take();
@@ -34,7 +44,7 @@ pub fn finish(mut outcome: Outcome, pictures: &[PathBuf], notes: Notes) -> Resul
         print(&summary::summary(&outcome, written))?;
     }
     match outcome.rendered.end {
-        End::Samples | End::Time | End::Noise => Ok(ExitCode::SUCCESS),
+        End::Samples | End::Time | End::Noise | End::NoEstimate => Ok(ExitCode::SUCCESS),
         End::Stopped => {
             notes.note(if outcome.rendered.progress.samples == 0 {
                 "interrupted before the first sample; no picture is written"
@@ -63,10 +73,10 @@ pub fn finish(mut outcome: Outcome, pictures: &[PathBuf], notes: Notes) -> Resul
     }
 }
 
-/// Warns of samples that are left out, and prints how one of them can be replayed.
-fn warn_of_losses(rendered: &Rendered, scene: &Scene, notes: Notes) {
+/// Samples that are left out, and how one of them can be replayed.
+fn losses(rendered: &Rendered, scene: &Scene) -> Option<String> {
     if rendered.dropped == 0 {
-        return;
+        return None;
     }
     let replay = rendered.dropped_samples.first().map_or(
         "; the driver ended the kernel before its time: use another driver, or --backend cpu".into(),
@@ -75,13 +85,29 @@ fn warn_of_losses(rendered: &Rendered, scene: &Scene, notes: Notes) {
             format!("; with the same options, --pixel {x},{y} --sample {} replays one", first.sample)
         },
     );
-    notes.warn(format_args!("{} samples that were not finite, or lost, are left out{replay}", rendered.dropped));
+    Some(format!("{} samples that were not finite, or lost, are left out{replay}", rendered.dropped))
 }
 
-/// Warns of pixels without a sample in the pictures that are written.
-fn warn_of_black_pixels(rendered: &Rendered, written: &[PathBuf], notes: Notes) {
-    let black = rendered.film.samples.iter().filter(|samples| **samples == 0).count();
-    if black > 0 && !written.is_empty() {
-        notes.warn(format_args!("{black} pixels have no sample and are black: the render ended during the first pass"));
-    }
+/// Pixels without a sample in the pictures that are written.
+fn pixels_without_samples(rendered: &Rendered, written: &[PathBuf]) -> Option<String> {
+    let missing = rendered.film.samples.iter().filter(|samples| **samples == 0).count();
+    (missing > 0 && !written.is_empty())
+        .then(|| format!("{missing} pixels have no sample and are black: the render ended during the first pass"))
+}
+
+/// A picture that is black, or that a PNG of it would show so.
+fn black(outcome: &Outcome, written: &[PathBuf]) -> Option<String> {
+    let Outcome { rendered, scene, .. } = outcome;
+    let dark = outcome.lacks_light || scene.dark_because().is_some();
+    let is_png = |path: &PathBuf| matches!(Format::of(path), Ok(Format::Png));
+    error_line::black_picture(&rendered.film, dark).or_else(|| {
+        let shown = written.iter().any(is_png);
+        shown.then(|| error_line::black_at_exposure(&rendered.film, scene.settings.exposure)).flatten()
+    })
+}
+
+/// A limit of the noise that was reached without the fireflies alone.
+fn reached_without_fireflies(rendered: &Rendered) -> Option<String> {
+    let End::Noise = rendered.end else { return None };
+    error_line::noise_with_fireflies(rendered.progress.limits.noise?, rendered.progress.error?)
 }

@@ -8,6 +8,7 @@ mod outcome;
 mod outputs;
 mod progress;
 mod replay;
+mod seconds;
 mod stats;
 mod summary;
 #[cfg(feature = "shaderc")]
@@ -20,7 +21,7 @@ use self::failing_tracer::FailingTracer;
 use self::options::LARGEST_SIDE;
 use self::outcome::Outcome;
 use self::progress::Reporter;
-use self::stats::Seconds;
+use self::seconds::Seconds;
 use crate::shared::backend_name;
 use crate::shared::film_size::FilmSize;
 use crate::shared::interrupts;
@@ -28,6 +29,7 @@ use crate::shared::printing::Notes;
 use crate::shared::values::Pixel;
 use luminaire::backend::{self, Renderer, Request};
 use luminaire::film::Film;
+use luminaire::reference::lost_light::lost_light;
 use luminaire::render::{End, Limits, Rendered, aovs, resume};
 use luminaire::scene::{self, FilmSettings, Scene};
 use luminaire::{Error, Result};
@@ -54,9 +56,12 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     let mut scene = scene::load(&options.scene)?;
     seconds.load = start.elapsed().as_secs_f64();
     change(&mut scene, options)?;
+    let lost = lost_light(&scene);
+    let lacks_light = !lost.is_empty();
+    scene.warnings.extend(lost);
     scene.warnings.iter().for_each(|warning| notes.warn(warning));
 
-    let render = || trace(options, &scene, &request, seconds, &pictures, notes);
+    let render = || trace(options, &scene, lacks_light, &request, seconds, &pictures, notes);
     #[cfg(feature = "shaderc")]
     if options.watch {
         return watch::repeat(&interrupts::STOP, &render);
@@ -84,6 +89,7 @@ fn change(scene: &mut Scene, options: &Options) -> Result<()> {
 fn trace(
     options: &Options,
     scene: &Scene,
+    lacks_light: bool,
     request: &Request,
     mut seconds: Seconds,
     pictures: &[PathBuf],
@@ -136,7 +142,7 @@ fn trace(
     }
     seconds.render = rendered.progress.seconds;
     seconds.device = rendered.device_seconds;
-    let outcome = Outcome { options, scene, renderer: &renderer, rendered, aovs: layers, saved, seconds };
+    let outcome = Outcome { options, scene, renderer: &renderer, rendered, aovs: layers, saved, lacks_light, warnings: vec![], seconds };
     ending::finish(outcome, pictures, notes)
 }
 

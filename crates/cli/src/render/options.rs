@@ -68,8 +68,9 @@ pub struct Options {
     /// Stop rendering after so many seconds; with --spp, whichever comes first.
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = seconds, help_heading = "Quality")]
     pub time: Option<f64>,
-    /// Stop when the estimated relative error (the root of relMSE) is below E, for example 0.02; with --spp and --time, whichever
-    /// comes first.
+    /// Stop when the estimated relative error (the root of relMSE) is below E, for example 0.02 for 2 %; with --spp and --time, whichever
+    /// comes first. It goes by the error without fireflies (pixels whose light only one or two of the four parts of their samples found); where
+    /// those hold most of the error, a warning says how large it is with them. A picture that is still black after 1024 samples a pixel ends, too.
     #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = noise, help_heading = "Quality")]
     pub noise: Option<f64>,
     /// Render only samples number A to B - 1 of every pixel, as a part that `luminaire merge` joins with others; wants -o PART.exr.
@@ -148,6 +149,9 @@ mod tests {
             ["--time", "inf"],
             ["--noise", "0"],
             ["--noise", "nan"],
+            ["--noise", "1.01"],
+            ["--noise", "2"],
+            ["--noise", "inf"],
             ["--pixel", "1"],
             ["--pixel", "1,-1"],
             ["--width", "0"],
@@ -167,7 +171,7 @@ mod tests {
         ] {
             assert_eq!(render(&bad).unwrap_err(), 2, "{bad:?}");
         }
-        for good in [["--spp", "4294967295"], ["--time", "0.5"], ["--exposure", "-2"], ["--max-bounces", "0"]] {
+        for good in [["--spp", "4294967295"], ["--time", "0.5"], ["--exposure", "-2"], ["--noise", "1"], ["--max-bounces", "0"]] {
             assert!(render(&good).is_ok(), "{good:?}");
         }
     }

@@ -1,7 +1,7 @@
 //! [`Outcome`]: everything that is known when tracing has ended, in memory.
 
 use super::options::Options;
-use super::stats::Seconds;
+use super::seconds::Seconds;
 use luminaire::Result;
 use luminaire::backend::Renderer;
 use luminaire::film::Aovs;
@@ -22,6 +22,10 @@ pub struct Outcome<'a> {
     pub aovs: Option<Aovs>,
     /// Whether the checkpoint could be saved; none: there is no `--checkpoint`, or nothing to save.
     pub saved: Option<Result<()>>,
+    /// Whether a warning tells of light that no estimator finds.
+    pub lacks_light: bool,
+    /// What there is to warn of, besides the scene's own warnings.
+    pub warnings: Vec<String>,
     /// How long everything took until now.
     pub seconds: Seconds,
 }

@@ -84,7 +84,7 @@ pub fn write(outcome: &mut Outcome, pictures: &[PathBuf]) -> Result<()> {
     write_pictures(outcome, pictures)?;
     outcome.seconds.write = start.elapsed().as_secs_f64();
     if let Some(path) = &outcome.options.stats {
-        let stats = Stats::new(outcome.scene, outcome.renderer, &outcome.rendered, outcome.seconds, pictures);
+        let stats = Stats::new(outcome, pictures);
         let text = serde_json::to_string_pretty(&stats).map_err(|e| Error::write(path, e))?;
         files::save_text(path, &(text + "\n"))?;
     }

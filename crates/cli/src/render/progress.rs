@@ -1,7 +1,7 @@
 //! How far a render is: a bar on a terminal, plain lines elsewhere.
 
 use crate::shared::printing::note;
-use crate::shared::units::{duration, percent};
+use crate::shared::units::duration;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use luminaire::render::Progress;
 use std::io::IsTerminal;
@@ -65,7 +65,7 @@ impl Reporter {
 fn describe(progress: &Progress) -> String {
     let of = progress.limits.spp.map_or(String::new(), |spp| format!(" of {spp}"));
     let left = progress.seconds_left().map_or(String::new(), |seconds| format!(", {} left", duration(seconds)));
-    let error = progress.error.map_or(String::new(), |error| format!(", error {}", percent(error.relative())));
+    let error = progress.error.map_or(String::new(), |error| format!(", error {}", error.in_words()));
     format!("{:.1}{of} samples a pixel, {:.2} Mrays/s{error}{left}", progress.spp(), progress.mrays_per_second())
 }
 
@@ -81,9 +81,13 @@ mod tests {
         let progress =
             Progress { samples: 1600, pixels: 100, rays: 6_000_000, seconds: 2.0, limits, ..Progress::default() };
         assert_eq!(describe(&progress), "16.0 of 64 samples a pixel, 3.00 Mrays/s, 6.00 s left");
-        let error = Some(ErrorEstimate { rmse: 0.1, rel_mse: 0.0625, fireflies: 0, rel_mse_with_fireflies: 0.0625 });
+        let error =
+            ErrorEstimate { rmse: 0.1, rel_mse: 0.0625, fireflies: 0, unknown: 0, rel_mse_with_fireflies: 0.0625 };
         let limits = Limits { noise: Some(0.125), ..limits };
-        let with_error = Progress { limits, error, ..progress };
+        let with_error = Progress { limits, error: Some(error), ..progress };
         assert_eq!(describe(&with_error), "16.0 of 64 samples a pixel, 3.00 Mrays/s, error 25 %, 6.00 s left");
+        let fireflies = Some(ErrorEstimate { fireflies: 1, rel_mse_with_fireflies: 0.25, ..error });
+        let said = describe(&Progress { error: fireflies, ..with_error });
+        assert!(said.contains(", error 25 % (50 % with fireflies), "), "{said}");
     }
 }

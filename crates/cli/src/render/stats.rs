@@ -1,36 +1,21 @@
 //! The figures of a run that `--stats` writes, as JSON.
 
-use luminaire::backend::Renderer;
-use luminaire::render::{End, Rendered};
-use luminaire::scene::Scene;
+use super::outcome::Outcome;
+use super::seconds::Seconds;
+use luminaire::render::End;
 use serde::Serialize;
-
-/// Wall-clock seconds of the phases of a run.
-#[derive(Debug, Clone, Copy, Default, Serialize)]
-pub struct Seconds {
-    /// Reading the scene.
-    pub load: f64,
-    /// Opening the device, with `build`.
-    pub open: f64,
-    /// Building the acceleration structures and uploading.
-    pub build: f64,
-    /// Rendering.
-    pub render: f64,
-    /// Rendering, by the device's own clock; 0 if it has none.
-    pub device: f64,
-    /// Writing the pictures.
-    pub write: f64,
-}
 
 /// The estimated error.
 #[derive(Debug, Clone, Copy, Serialize)]
 struct ErrorFigures {
-    /// The root of `rel_mse`: what `--noise` bounds.
+    /// The root of `rel_mse`: what `--noise` bounds, without the fireflies.
     relative: f64,
     rel_mse: f64,
     rmse: f64,
     /// Pixels that are left out of it.
     fireflies: u64,
+    /// Pixels that are left out of it because they have too few samples.
+    unknown: u64,
     relative_with_fireflies: f64,
 }
 
@@ -42,7 +27,7 @@ pub struct Stats<'a> {
     triangles: u64,
     width: u32,
     height: u32,
-    /// "samples", "time" or "noise": a limit was met; "interrupted"; "failed".
+    /// "samples", "time" or "noise": a limit was met; "no-estimate": there was `--noise`, and nothing to estimate; "interrupted"; "failed".
     end: &'static str,
     spp_least: u32,
     spp_most: u32,
@@ -52,7 +37,7 @@ pub struct Stats<'a> {
     driver: &'a str,
     why: &'a str,
     seconds: Seconds,
-    /// Estimated, without fireflies; none if there are too few samples.
+    /// Estimated, without fireflies; none if there are too few samples, or the picture is black.
     error: Option<ErrorFigures>,
     samples: u64,
     rays: u64,
@@ -62,19 +47,19 @@ pub struct Stats<'a> {
     mrays_per_second: f64,
     samples_per_second: f64,
     dropped: u64,
+    /// The share of the pixels that are black; none if none has samples.
+    black_share: Option<f64>,
+    /// Whether one of the warnings tells of light that no estimator finds: then `error` is of the rest.
+    lacks_light: bool,
     outputs: Vec<String>,
-    warnings: &'a [String],
+    /// What the loader had to guess, drop or scale, what the picture lacks, and what became of the render.
+    warnings: Vec<&'a str>,
 }
 
 impl<'a> Stats<'a> {
     /// Gathers the figures.
-    pub fn new(
-        scene: &'a Scene,
-        renderer: &'a Renderer,
-        rendered: &Rendered,
-        seconds: Seconds,
-        outputs: &[std::path::PathBuf],
-    ) -> Self {
+    pub fn new(outcome: &'a Outcome, outputs: &[std::path::PathBuf]) -> Self {
+        let Outcome { scene, renderer, rendered, seconds, .. } = outcome;
         let progress = &rendered.progress;
         Stats {
             version: env!("CARGO_PKG_VERSION"),
@@ -86,6 +71,7 @@ impl<'a> Stats<'a> {
                 End::Samples => "samples",
                 End::Time => "time",
                 End::Noise => "noise",
+                End::NoEstimate => "no-estimate",
                 End::Stopped => "interrupted",
                 End::Failed(_) => "failed",
             },
@@ -96,12 +82,13 @@ impl<'a> Stats<'a> {
             device: &renderer.device,
             driver: &renderer.driver,
             why: &renderer.why,
-            seconds,
+            seconds: *seconds,
             error: progress.error.map(|e| ErrorFigures {
                 relative: e.relative(),
                 rel_mse: e.rel_mse,
                 rmse: e.rmse,
                 fireflies: e.fireflies,
+                unknown: e.unknown,
                 relative_with_fireflies: e.relative_with_fireflies(),
             }),
             samples: progress.samples,
@@ -113,8 +100,10 @@ impl<'a> Stats<'a> {
             mrays_per_second: progress.mrays_per_second(),
             samples_per_second: if progress.seconds > 0.0 { progress.samples as f64 / progress.seconds } else { 0.0 },
             dropped: rendered.dropped,
+            black_share: rendered.film.black_share(),
+            lacks_light: outcome.lacks_light,
             outputs: outputs.iter().map(|path| path.display().to_string()).collect(),
-            warnings: &scene.warnings,
+            warnings: scene.warnings.iter().chain(&outcome.warnings).map(String::as_str).collect(),
         }
     }
 }

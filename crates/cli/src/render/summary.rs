@@ -1,7 +1,8 @@
 //! The text on stdout after a render: its files, the estimated error, times and speed.
 
 use super::outcome::Outcome;
-use crate::shared::units::{duration, percent};
+use crate::shared::error_line::error_line;
+use crate::shared::units::duration;
 use luminaire::render::End;
 use std::path::PathBuf;
 
@@ -15,6 +16,7 @@ pub fn summary(outcome: &Outcome, written: &[PathBuf]) -> String {
     let ended = match rendered.end {
         End::Time => ", ended by --time",
         End::Noise => ", ended by --noise",
+        End::NoEstimate => ", ended by --noise without an estimate",
         End::Samples | End::Stopped | End::Failed(_) => "",
     };
     let mut text = String::new();
@@ -28,19 +30,8 @@ pub fn summary(outcome: &Outcome, written: &[PathBuf]) -> String {
     if let Some(path) = &options.stats {
         text += &format!("{}: the figures of this run\n", path.display());
     }
-    if let Some(error) = progress.error {
-        text += &format!("estimated error {} (RMSE {:.3e})", percent(error.relative()), error.rmse);
-        text += &match error.fireflies {
-            0 => "\n".into(),
-            1 => format!(
-                ", without 1 pixel that is a firefly or a very small lamp (with it {})\n",
-                percent(error.relative_with_fireflies())
-            ),
-            n => format!(
-                ", without {n} pixels that are fireflies or very small lamps (with them {})\n",
-                percent(error.relative_with_fireflies())
-            ),
-        };
+    if progress.samples > 0 {
+        text += &error_line(film, progress.error, outcome.lacks_light);
     }
     if let (Some(limit), false) = (progress.limits.noise, matches!(rendered.end, End::Noise)) {
         text += &format!("--noise {limit} was not reached\n");

@@ -11,11 +11,14 @@ pub fn seconds(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A relative error above 0.
+/// A relative error above 0, and no more than 1: nobody wants 200 %, but many mean 2 %.
 pub fn noise(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
-        Ok(noise) if noise > 0.0 && noise.is_finite() => Ok(noise),
-        _ => Err("expected a relative error above 0, for example 0.02 for 2 %".into()),
+        Ok(noise) if noise > 0.0 && noise <= 1.0 => Ok(noise),
+        Ok(noise) if noise > 1.0 && noise <= 100.0 => {
+            Err(format!("expected a relative error of at most 1; if {noise} % is meant, that is {}", noise / 100.0))
+        }
+        _ => Err("expected a relative error above 0 and at most 1, for example 0.02 for 2 %".into()),
     }
 }
 
