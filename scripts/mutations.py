@@ -23,6 +23,7 @@ COPY = ROOT / "target/mutations/copy"
 CLOSED_FORMS = ["--test", "closed_forms"]
 ERROR_BAR = ["--test", "error_bar"]
 REFERENCE = ["--test", "reference"]
+LIBRARY = ["--lib"]
 KERNEL = ["--test", "gpu", "--", "--skip", "fallback"]
 
 # Name, file, what stands there (once), what the bug makes of it, and which tests are to notice.
@@ -63,6 +64,16 @@ MUTATIONS = [
      "random4(pixel, ~part, block, seed)", "random4(pixel, ~0u, block, seed)", [ERROR_BAR, KERNEL]),
     ("samples left out still count", "src/film/mod.rs",
      "taken - self.dropped.get(&(pixel, part)).unwrap_or(&0)", "taken", [["--lib", "film"]]),
+    ("relMSE with a unit", "src/film/brightness.rs",
+     "off * off / (radiance * radiance + (DARK * self.0).powi(2))", "off * off / (radiance * radiance + 0.01)", [LIBRARY]),
+    ("fireflies with a unit", "src/film/error.rs",
+     "(expected + FIREFLY_FLOOR * half_power_mean)", "(expected + FIREFLY_FLOOR)", [LIBRARY]),
+    ("a black picture without an error", "src/film/error.rs",
+     "let known = !brightness.is_black();", "let known = true;", [LIBRARY]),
+    ("light through glass counts as found", "src/reference/lost_light.rs",
+     "(&mut seen.impulses[at], surfaces > 0)", "(&mut seen.impulses[at], false)", [REFERENCE]),
+    ("light by mirrors counts as found", "src/reference/lost_light.rs",
+     "*(if surfaces == 0 { &mut sent.landed.found } else { &mut sent.landed.lost }) += landed;", "sent.landed.found += landed;", [REFERENCE]),
 ]
 
 

@@ -150,12 +150,12 @@ impl Reference {
         let here = seen.impulses.get(at).copied().unwrap_or_default();
         let much_is_sent = on_its_way >= LEAST_OF_ITS_OWN && on_its_way * power >= LEAST_OF_ALL;
         let much_is_seen = here.lost_share() >= LEAST_OF_ITS_OWN && here.lost >= LEAST_OF_ALL * seen.all();
-        let how_much = match (much_is_sent, much_is_seen) {
+        let (share, how) = match (much_is_sent, much_is_seen) {
             (false, false) => return None,
             (_, true) if !much_is_sent || here.lost_share() > sent.first => {
-                format!("on what the camera sees comes through glass, about {} of it", percent(here.lost_share()))
+                (here.lost_share(), "on what the camera sees comes through glass")
             }
-            _ => format!("falls on glass or mirrors first, about {} of it", percent(sent.first)),
+            _ => (sent.first, "falls on glass or mirrors first"),
         };
         let path = &self.scene.path;
         let name = if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("obj")) {
@@ -170,12 +170,13 @@ impl Reference {
             format!("[[luminaire]] {}", own.map_or(at + 1, |(number, _)| number))
         };
         let advice = match luminaire {
-            Luminaire::Point { .. } => "a small mesh that emits",
+            Luminaire::Point { .. } => "an area luminaire (a small mesh that emits)",
             Luminaire::Infinite { .. } => "a distant mesh that emits, or an [environment] whose image has the sun,",
         };
+        let share = percent(share);
         Some(format!(
-            "{}: light of {name} {how_much}; no estimator here finds light of a luminaire without an area that reaches a surface through glass or by a \
-             mirror: the picture lacks it; {advice} in its place is found",
+            "{}: about {share} of the light of {name} {how}; no estimator here finds light of a luminaire without an area that reaches a surface \
+             through glass or by a mirror: the picture lacks it; use {advice} instead",
             path.display()
         ))
     }

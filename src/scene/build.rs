@@ -123,6 +123,23 @@ pub fn icosphere(subdivisions: u32) -> Mesh {
     mesh(positions, &triangles)
 }
 
+/// Makes everything that emits `factor` times as bright: the same picture in another unit of light.
+pub fn brighter(scene: &Scene, factor: f32) -> Scene {
+    let mut scene = scene.clone();
+    scene.materials.iter_mut().for_each(|material| material.emission *= factor);
+    for luminaire in &mut scene.luminaires {
+        match luminaire {
+            Luminaire::Point { intensity, .. } => *intensity *= factor,
+            Luminaire::Infinite { irradiance, .. } => *irradiance *= factor,
+        }
+    }
+    scene.environment.iter_mut().for_each(|environment| environment.radiance *= factor);
+    if let Integrator::Simple { ambient } = &mut scene.integrator {
+        *ambient *= factor;
+    }
+    scene
+}
+
 /// Moves and scales everything: radiance stays as it is, sample by sample, but for rounding.
 pub fn transformed(scene: &Scene, scale: f32, shift: Vec3) -> Scene {
     let mut scene = scene.clone();

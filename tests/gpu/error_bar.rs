@@ -4,8 +4,10 @@ use super::*;
 use crate::common::scenes::*;
 use glam::{Affine3A, Vec3};
 use luminaire::film::{Batch, Tile};
-use luminaire::render::{End, Limits, Tracer, render};
-use luminaire::scene::{Luminaire, Scene};
+use luminaire::reference::Reference;
+use luminaire::render::{End, Limits, Rendered, Tracer, render};
+use luminaire::scene::{Luminaire, Material, Scene};
+use luminaire_measure::metrics::compare;
 use std::sync::atomic::AtomicBool;
 
 /// A floor below a point luminaire whose radiance overflows `f32` in some pixels: in the reference, which computes in `f64`, when it is
@@ -98,5 +100,79 @@ fn a_noise_limit_is_met() {
         println!("{}: {spp} samples, {error:?}, against 16 times as many {relative}", backend.name());
         // The truth's own error adds 3 %.
         assert!((0.8..1.25).contains(&(relative / promise)), "{relative}");
+    });
+}
+
+/// Runs a test on the reference and on every backend: a name, and what makes a tracer of a scene.
+fn on_the_reference_and_every_backend(test: impl Fn(&str, &dyn Fn(&Scene) -> Box<dyn Tracer>)) {
+    test("reference", &|scene| Box::new(Reference::new(scene)));
+    on_every_backend(|backend| test(backend.name(), &|scene| Box::new(backend.tracer(scene))));
+}
+
+fn rendered(mut tracer: Box<dyn Tracer>, scene: &Scene, limits: Limits) -> Rendered {
+    let size = (scene.film.width, scene.film.height);
+    render(tracer.as_mut(), size, limits, &mut |_| {}, &AtomicBool::new(false)).expect("the film fits")
+}
+
+/// The same scene in another unit of light: the same error, the same map of it, the same fireflies, the same end by a limit of the noise, and the same distance
+/// from another picture. Powers of two change no digit, powers of ten only roundings.
+#[test]
+fn the_unit_of_light_does_not_show() {
+    for mut scene in [glass_room(16, 16), open_air(16, 16)] {
+        estimator(&mut scene).max_bounces = Some(8);
+        on_the_reference_and_every_backend(|name, tracer| {
+            let numbers = |unit: f32| {
+                let scene = brighter(&scene, unit);
+                let film = rendered(tracer(&scene), &scene, Limits { spp: Some(32), ..Limits::default() }).film;
+                let errors = film.error_map().expect("samples");
+                let total = errors.total.expect("light");
+                let quiet = rendered(tracer(&scene), &scene, Limits { noise: Some(0.3), ..Limits::default() });
+                let other = Scene { settings: luminaire::scene::RenderSettings { seed: 9, ..scene.settings }, ..scene.clone() };
+                let other = rendered(tracer(&other), &other, Limits { spp: Some(64), ..Limits::default() }).film;
+                let picture = |film: &luminaire::Film| luminaire::picture::Picture {
+                    width: film.width,
+                    height: film.height,
+                    rgb: film.to_linear().as_chunks().0.to_vec(),
+                    error: None,
+                    clamped: false,
+                };
+                let apart = compare(&picture(&film), &picture(&other), 0).expect("one size");
+                let map = errors.relative.iter().map(|e| f64::from(e * e)).sum::<f64>();
+                let counts = [total.fireflies, quiet.film.most_samples().into(), quiet.progress.error.unwrap().fireflies];
+                (counts, [total.rel_mse, total.rel_mse_with_fireflies, map, apart.relmse, total.rmse / f64::from(unit)])
+            };
+            let (counts, expected) = numbers(1.0);
+            assert!(counts[1] > 32, "{name}: the limit of the noise was met at once: {counts:?}");
+            for (unit, slack) in [(1e-6f32, 1e-3), (1e6, 1e-3), (0.5f32.powi(20), 1e-9), (2f32.powi(20), 1e-9)] {
+                let (found_counts, found) = numbers(unit);
+                assert_eq!(found_counts, counts, "{name} in units of {unit}");
+                for (found, expected) in found.iter().zip(expected) {
+                    assert!((found / expected - 1.0).abs() < slack, "{name} in units of {unit}: {found} for {expected}");
+                }
+            }
+        });
+    }
+}
+
+/// A point luminaire in a ball of glass: black on every backend, and no error is estimated of that.
+#[test]
+fn a_picture_without_its_light_has_no_estimate() {
+    let mut scene = empty(8, 8);
+    let floor = quad(Vec3::new(-4.0, -1.0, -8.0), Vec3::Z * 8.0, Vec3::X * 8.0);
+    add(&mut scene, floor, matte(Vec3::splat(0.5)), Affine3A::IDENTITY);
+    let glass = Material { reflection: Vec3::ONE, transmission: Vec3::ONE, eta: Some(1.5), ..matte(Vec3::ZERO) };
+    add(&mut scene, icosphere(1), glass, Affine3A::from_translation(Vec3::new(0.0, 0.0, -4.0)));
+    scene.luminaires.push(Luminaire::Point { position: Vec3::new(0.0, 0.0, -4.0), intensity: Vec3::ONE });
+    on_the_reference_and_every_backend(|name, tracer| {
+        let black = rendered(tracer(&scene), &scene, Limits { noise: Some(0.1), ..Limits::default() });
+        assert!(matches!(black.end, End::NoEstimate), "{name}: {:?}", black.end);
+        assert_eq!((black.film.error(), black.film.black_share()), (None, Some(1.0)), "{name}");
+        // A flat lamp that fills the film has no noise, and that is another thing.
+        let mut flat = scene.clone();
+        let wall = quad(Vec3::new(-9.0, -9.0, -0.5), Vec3::X * 18.0, Vec3::Y * 18.0);
+        add(&mut flat, wall, lamp(Vec3::ONE), Affine3A::IDENTITY);
+        let flat = rendered(tracer(&flat), &flat, Limits { noise: Some(0.1), ..Limits::default() });
+        assert!(matches!(flat.end, End::Noise), "{name}: {:?}", flat.end);
+        assert_eq!(flat.film.error().map(|error| error.rel_mse), Some(0.0), "{name}");
     });
 }

@@ -8,6 +8,7 @@ mod estimators;
 mod impulses;
 mod intersection;
 mod light;
+mod lost_light;
 mod sampling;
 mod scattering;
 mod sensor;

@@ -132,6 +132,25 @@ fn a_run_and_its_baselines() {
         assert!(said.contains("was another device"), "{said}");
         assert_eq!(said.contains("error: "), code == 1, "{said}");
     }
+    // relMSE by another definition, as it was before the record said by which: it is not compared, and that is said.
+    let mut other = record.clone();
+    other["run"].as_object_mut().unwrap().remove("relmse").expect("the definition of relMSE");
+    for section in other["sections"].as_array_mut().unwrap() {
+        for figure in section["figures"].as_array_mut().unwrap() {
+            let name = figure["name"].as_str().unwrap();
+            let factor = if name.contains("/relmse") { 1e-3 } else { 1.0 };
+            for key in ["median", "least", "most"] {
+                figure[key] = (figure[key].as_f64().unwrap() * factor).into();
+            }
+        }
+    }
+    std::fs::write(path.join("other.json"), other.to_string()).unwrap();
+    let output = bench(path, &[&words[..], &of_scenes, &["--out", "second", "--baseline", "other.json"]].concat());
+    let text = said(&output);
+    assert!(text.contains("relMSE was mean of (a - b)^2 / (b^2 + 0.01) and is") && text.contains("are not compared"), "{text}");
+    assert!(!text.lines().any(|line| line.trim().starts_with("WORSE") && line.contains("relmse")), "{text}");
+    assert!(text.contains("build-seconds") || text.contains("\nagainst the baseline\n"), "{text}");
+
     // Nothing in common: nothing is compared, and that is no success.
     let renamed = record.to_string().replace("\"preparation/", "\"separation/");
     std::fs::write(path.join("other.json"), renamed).unwrap();

@@ -51,17 +51,38 @@ impl Folder {
 #[test]
 fn figures() {
     let folder = Folder::new();
-    // The firefly is all there is: 49.5^2 / 96, and of that the root; over 0.26 for relMSE.
+    // The firefly is all there is: 49.5^2 / 96, and of that the root; over 0.25 and a tenth of 0.5588, squared, for relMSE.
     let parts =
-        ["8 x 4 pixels, floats", "RMSE", "5.052", "relMSE", "98.17", "6 2  50.00 0.5000 0.5000", "FLIP", "stops"];
+        ["8 x 4 pixels, floats", "RMSE", "5.052", "relMSE", "100.8", "6 2  50.00 0.5000 0.5000", "FLIP", "stops"];
     folder.says(&["image.exr", "reference.exr"], 0, &parts);
     let none = folder.says(&["image.exr", "reference.exr", "--worst", "0"], 0, &[]);
     assert!(!none.contains("worst"), "{none}");
     let one = folder.says(&["image.exr", "reference.exr", "--worst", "1"], 0, &["6 2  50.00"]);
     assert_eq!(one.lines().skip_while(|line| *line != "worst pixels").count(), 3, "{one}");
+    assert!(none.contains("(b^2 + (m/10)^2), m the half-power mean of b, 0.5588"), "{none}");
     let same =
         folder.says(&["close.exr", "close.exr", "--max-rmse", "0", "--max-flip", "0", "--max-bias", "0"], 0, &[]);
     assert!(same.contains("RMSE        0") && !same.contains("worst"), "{same}");
+}
+
+/// Whatever the unit of the light: relMSE and its limit. A black reference has none.
+#[test]
+fn units_and_black_references() {
+    let folder = Folder::new();
+    for (unit, name) in [(1e-6, "dim"), (1e6, "bright")] {
+        let reference = [[0.5 * unit; 3], [0.0; 3], [4.0 * unit; 3], [unit; 3]];
+        let image = reference.map(|rgb| rgb.map(|v| v * 1.1 + 0.01 * unit));
+        folder.exr("a.exr", &image, None);
+        folder.exr("b.exr", &reference, None);
+        let said = folder.says(&["a.exr", "b.exr", "--max-relmse", "0.03"], 0, &["relMSE"]);
+        let relmse = said.lines().find(|line| line.starts_with("relMSE")).unwrap().to_owned();
+        assert!(relmse.contains("0.01251"), "{name}: {relmse}");
+    }
+    folder.exr("black.exr", &[[0.0; 3]; 4], None);
+    let words = ["a.exr", "black.exr", "--max-relmse", "1", "--stats", "s.json"];
+    let said = folder.says(&words, 1, &["warning: black.exr is black", "relMSE is inf"]);
+    assert!(!said.contains("NaN"), "{said}");
+    folder.says(&["black.exr", "black.exr"], 0, &["warning: black.exr is black"]);
 }
 
 #[test]
@@ -76,7 +97,7 @@ fn limits() {
     );
     folder.says(&["image.exr", "reference.exr", "--max-rmse", "5"], 1, &["RMSE is 5.05", "--max-rmse 5, 1.010 times"]);
     let all = ["image.exr", "reference.exr", "--max-rmse", "9", "--max-relmse", "0", "--max-flip", "1e-6"];
-    let said = folder.says(&all, 1, &["relMSE is 98.17", "--max-relmse 0", "FLIP is", "--max-flip 0.000001"]);
+    let said = folder.says(&all, 1, &["relMSE is 100.8", "--max-relmse 0", "FLIP is", "--max-flip 0.000001"]);
     assert!(!said.contains("--max-rmse"), "{said}");
 }
 
