@@ -86,8 +86,8 @@ mod tests {
             (Curve::Power(2.2), false, false, 0.217_638),
             (standard(13), true, false, 0.214_041),
             (standard(8), false, true, 0.5),
-            // BT.709, worked out by hand: ((0.5 + 0.099) / 1.099)^(1 / 0.45).
-            (standard(1), false, false, 0.259_589),
+            // BT.709, worked out by hand: ((0.5 + 0.0993) / 1.0993)^(1 / 0.45).
+            (standard(1), false, false, 0.259_72),
         ] {
             assert_eq!((curve.is_srgb(), curve.is_linear()), (is_srgb, is_linear), "{curve:?}");
             let table = curve.table(3).unwrap();

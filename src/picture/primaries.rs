@@ -48,7 +48,7 @@ impl Primaries {
     /// # Errors
     /// In words that can follow "its primaries": they span no triangle, or white is none.
     pub(super) fn to_srgb(self) -> Result<Option<DMat3>, String> {
-        let near = |a: DVec2, b: DVec2| (a - b).abs().max_element() < SAME;
+        let near = |a: DVec2, b: DVec2| (a - b).abs().cmplt(DVec2::splat(SAME)).all();
         let srgb = Self::REC_709;
         if near(self.white, srgb.white) && self.rgb.iter().zip(srgb.rgb).all(|(a, b)| near(*a, b)) {
             return Ok(None);

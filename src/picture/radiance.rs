@@ -147,7 +147,7 @@ impl Scanlines {
     fn parse(line: &str) -> Option<Self> {
         let words: Vec<&str> = line.split_whitespace().collect();
         let [outer, number, inner, length] = words[..] else { return None };
-        let columns = match (&outer[1..], &inner[1..]) {
+        let columns = match (outer.get(1..)?, inner.get(1..)?) {
             ("Y", "X") => false,
             ("X", "Y") => true,
             _ => return None,
