@@ -152,6 +152,9 @@ impl ImageFile {
         if texels > most {
             return Err(too_many(texels));
         }
+        if !file.is_long_enough() {
+            return Err("it is truncated: so few bytes cannot hold so many scanlines".into());
+        }
         check_memory((width, height), stored, 4, available())?;
         let matrix = file.matrix;
         let texels = Texels::Float(file.rgba().map_err(in_words)?);

@@ -12,6 +12,7 @@ use std::path::Path;
 const LONGEST_HEAD: u64 = 1 << 20;
 
 /// A file of which the head was read.
+#[derive(Debug)]
 pub(super) struct Radiance {
     file: BufReader<std::fs::File>,
     /// Columns and rows of the picture.
@@ -109,6 +110,12 @@ impl Radiance {
         let Scanlines { length, number, columns, .. } = scanlines;
         let (width, height) = if columns { (number, length) } else { (length, number) };
         Ok(Radiance { file, width, height, scanlines, multiplied, matrix })
+    }
+
+    /// Whether the file is long enough for its scanlines, none of which has fewer bytes than its first pixel: a small file never asks for much
+    /// memory.
+    pub(super) fn is_long_enough(&self) -> bool {
+        self.file.get_ref().metadata().is_ok_and(|about| about.len() >= 4 * u64::from(self.scanlines.number))
     }
 
     /// Radiance, and alpha of 1, of every pixel, rows from the top.

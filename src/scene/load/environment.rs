@@ -44,7 +44,8 @@ pub(super) fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Option<Env
         })
         .collect();
     if odd > 0 {
-        warnings.push(format!("{}: {odd} texels are negative or NaN; 0 is used there", path.display()));
+        let why = if image.rounding() > 0.0 { " (colours that sRGB cannot show)" } else { "" };
+        warnings.push(format!("{}: {odd} texels are negative or NaN{why}; 0 is used there", path.display()));
     }
     let largest = texels.iter().flat_map(|t| t.to_array()).filter(|c| c.is_finite()).fold(0.0, f32::max);
     for texel in texels.iter_mut().filter(|texel| !texel.is_finite()) {
