@@ -64,5 +64,5 @@ pub fn on_every_backend(scene: &Scene, spp: u32) -> luminaire::Result<Vec<(Backe
 /// A film as a picture that can be compared with others, for example with one that [`picture::read`] read.
 pub fn picture(film: &Film) -> Picture {
     let rgb = film.to_linear().as_chunks().0.to_vec();
-    Picture { width: film.width, height: film.height, rgb, error: None, clamped: false }
+    Picture { width: film.width, height: film.height, rgb, error: None, clamped: false, warnings: vec![] }
 }

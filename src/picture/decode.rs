@@ -1,9 +1,12 @@
 //! Images from disk, as textures and environments need them: OpenEXR, and whatever the `image` crate decodes.
 
+use super::encoding::{Curve, Encoding};
 use super::first_bytes::first_bytes;
-use super::openexr;
+use super::radiance::{self, Radiance};
 use super::srgb::linear;
+use super::{foreign, icc, openexr, png_colours};
 use crate::memory::{available, gib};
+use glam::{DMat3, DVec3};
 use half::f16;
 use image::{DynamicImage, ImageDecoder, ImageError, ImageReader, Limits};
 use rayon::prelude::*;
@@ -37,7 +40,17 @@ pub(crate) struct ImageFile {
     pub height: u32,
     /// The file has an alpha channel.
     pub has_alpha: bool,
+    /// What was guessed or ignored, in words that can follow the file's name.
+    pub warnings: Vec<String>,
+    /// The file says that it holds the six sides of a cube.
+    pub cube: bool,
+    /// Its colours are multiplied by its alpha already.
+    premultiplied: bool,
     texels: Texels,
+    /// The linear red, green and blue of each code, where whole numbers are not sRGB.
+    table: Option<Vec<[f32; 3]>>,
+    /// From linear values to linear sRGB, where the file has other primaries.
+    matrix: Option<DMat3>,
 }
 
 #[derive(Debug)]
@@ -55,9 +68,14 @@ impl ImageFile {
     /// # Errors
     /// In words that can follow the file's name: it cannot be read, is no image, is damaged, or is too large.
     pub(crate) fn open(path: &Path, most: u64, too_many: impl FnOnce(u64) -> String) -> Result<Self, String> {
-        if first_bytes(path)? == openexr::MAGIC {
+        let start = first_bytes(path)?;
+        if start.starts_with(&openexr::MAGIC) {
             return Self::open_exr(path, most, too_many);
         }
+        if radiance::begins(&start) {
+            return Self::open_radiance(path, most, too_many);
+        }
+        let mut warnings = Vec::new();
         let mut reader =
             ImageReader::open(path).and_then(ImageReader::with_guessed_format).map_err(|e| e.to_string())?;
         let mut limits = Limits::default();
@@ -65,7 +83,10 @@ impl ImageFile {
         limits.max_image_height = Some(LARGEST_SIDE);
         limits.max_alloc = Some(MOST_HEADER);
         reader.limits(limits.clone());
-        let mut decoder = reader.into_decoder().map_err(in_words)?;
+        let mut decoder = reader.into_decoder().map_err(|error| match error {
+            ImageError::Limits(_) => too_large(),
+            error => foreign::named(path, &start).unwrap_or_else(|| in_words(error)),
+        })?;
         let (width, height) = decoder.dimensions();
         let texels = u64::from(width) * u64::from(height);
         if texels > most {
@@ -78,11 +99,18 @@ impl ImageFile {
         check_memory((width, height), decoder.total_bytes(), channel, available())?;
         limits.reserve(decoder.total_bytes()).map_err(in_words)?;
         decoder.set_limits(limits).map_err(in_words)?;
+        // One that cannot be read is as good as none.
+        let profile = decoder.icc_profile().ok().flatten();
         let image = DynamicImage::from_decoder(decoder).map_err(in_words)?;
         let (width, height, has_alpha) = (image.width(), image.height(), image.color().has_alpha());
         if width == 0 || height == 0 {
             return Err("it has no texels".into());
         }
+        let colours = match profile {
+            _ if start.starts_with(&png_colours::MAGIC) => png_colours::encoding(path, &mut warnings)?,
+            Some(profile) => icc::encoding(&profile, &mut warnings),
+            None => Encoding::SRGB,
+        };
         let texels = match &image {
             DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => {
                 Texels::Float(image.into_rgba32f().into_raw())
@@ -92,11 +120,59 @@ impl ImageFile {
             }
             _ => Texels::Eight(image.into_rgba8().into_raw()),
         };
-        Ok(ImageFile { width, height, has_alpha, texels })
+        let table = match &texels {
+            Texels::Float(_) => {
+                // Without a profile, or with one of sRGB, floats are linear as everywhere.
+                if colours.curve != Curve::Srgb && !colours.curve.is_linear() {
+                    warnings.push(
+                        "its numbers are floats and are taken as linear, which its colour profile says they are not"
+                            .into(),
+                    );
+                }
+                None
+            }
+            Texels::Eight(_) => colours.curve.table(1 << 8),
+            Texels::Sixteen(_) => colours.curve.table(1 << 16),
+        };
+        let table = table.filter(|_| !colours.curve.is_srgb());
+        let matrix = colours.matrix;
+        Ok(ImageFile { width, height, has_alpha, warnings, cube: false, premultiplied: false, texels, table, matrix })
+    }
+
+    fn open_radiance(path: &Path, most: u64, too_many: impl FnOnce(u64) -> String) -> Result<Self, String> {
+        let mut warnings = Vec::new();
+        let file = Radiance::open(path, &mut warnings)?;
+        let (width, height) = (file.width, file.height);
+        let texels = u64::from(width) * u64::from(height);
+        // Three channels as they are decoded.
+        let stored = texels * 12;
+        if width > LARGEST_SIDE || height > LARGEST_SIDE || stored > MOST_MEMORY {
+            return Err(too_large());
+        }
+        if texels > most {
+            return Err(too_many(texels));
+        }
+        if !file.is_long_enough() {
+            return Err("it is truncated: so few bytes cannot hold so many scanlines".into());
+        }
+        check_memory((width, height), stored, 4, available())?;
+        let matrix = file.matrix;
+        let texels = Texels::Float(file.rgba().map_err(in_words)?);
+        Ok(ImageFile {
+            width,
+            height,
+            has_alpha: false,
+            warnings,
+            cube: false,
+            premultiplied: false,
+            texels,
+            table: None,
+            matrix,
+        })
     }
 
     fn open_exr(path: &Path, most: u64, too_many: impl FnOnce(u64) -> String) -> Result<Self, String> {
-        let file = openexr::Opened::new(path, openexr::Several::First)?;
+        let file = openexr::Opened::new(path)?;
         let (width, height) = file.size();
         let texels = u64::from(width) * u64::from(height);
         let stored = texels * if file.has_alpha() { 16 } else { 12 };
@@ -107,7 +183,21 @@ impl ImageFile {
             return Err(too_many(texels));
         }
         check_memory((width, height), stored, 4, available())?;
-        Ok(ImageFile { width, height, has_alpha: file.has_alpha(), texels: Texels::Float(file.rgba()?) })
+        let mut warnings = file.warnings.clone();
+        if !file.has_alpha() {
+            warnings.extend(file.cropped());
+        }
+        Ok(ImageFile {
+            width,
+            height,
+            has_alpha: file.has_alpha(),
+            warnings,
+            cube: file.is_cube(),
+            premultiplied: file.has_alpha(),
+            texels: Texels::Float(file.rgba()?),
+            table: None,
+            matrix: file.matrix(),
+        })
     }
 
     /// How many texels there are.
@@ -136,30 +226,58 @@ impl ImageFile {
         rgba
     }
 
-    /// A texel's linear colour and alpha: whole numbers are taken as sRGB, but for alpha; floats are linear as they are.
+    /// Whether decoding can leave colours that are negative, not finite, or brighter than white.
+    pub(crate) fn is_unbounded(&self) -> bool {
+        self.is_float() || self.matrix.is_some()
+    }
+
+    /// Whether colours are multiplied by alpha already.
+    pub(crate) fn is_premultiplied(&self) -> bool {
+        self.premultiplied
+    }
+
+    /// Less than this share of a texel's largest channel is what is left of rounding: what is exactly on the edge of one set of primaries
+    /// comes out beside it in another.
+    pub(crate) fn rounding(&self) -> f32 {
+        if self.matrix.is_some() { 2e-3 } else { 0.0 }
+    }
+
+    /// A texel's linear colour in sRGB's primaries, and alpha: whole numbers are decoded as the file says, which without a word is as sRGB, but
+    /// for alpha; floats are linear as they are.
     pub(crate) fn linear(&self, texel: usize) -> [f32; 4] {
         let [r, g, b, a] = self.stored(texel);
         let at = |channel: usize| 4 * texel + channel;
-        match &self.texels {
-            Texels::Float(_) => [r, g, b, a],
-            Texels::Eight(data) => {
-                let colour = |channel| LINEAR_8[usize::from(data[at(channel)])];
-                [colour(0), colour(1), colour(2), a]
-            }
-            Texels::Sixteen(data) => {
-                let colour = |channel| LINEAR_16[usize::from(data[at(channel)])];
-                [colour(0), colour(1), colour(2), a]
-            }
-        }
+        let decoded = |channel: usize, code: usize, srgb: &[f32]| match &self.table {
+            Some(table) => table[code][channel],
+            None => srgb[code],
+        };
+        let rgb = match &self.texels {
+            Texels::Float(_) => [r, g, b],
+            Texels::Eight(data) => [0, 1, 2].map(|channel| decoded(channel, data[at(channel)].into(), &LINEAR_8)),
+            Texels::Sixteen(data) => [0, 1, 2].map(|channel| decoded(channel, data[at(channel)].into(), &LINEAR_16)),
+        };
+        let [r, g, b] = match self.matrix {
+            // A grey is a grey.
+            Some(matrix) if rgb != [rgb[0]; 3] => (matrix * DVec3::from(rgb.map(f64::from))).as_vec3().to_array(),
+            _ => rgb,
+        };
+        [r, g, b, a]
     }
 
-    /// All texels: `colour` of the linear colours (see [`ImageFile::linear`]), and `alpha` of alpha.
+    /// The same, but with colours that are not multiplied by alpha; where alpha is 0, they are as they are stored.
+    pub(crate) fn straight(&self, texel: usize) -> [f32; 4] {
+        let [r, g, b, a] = self.linear(texel);
+        if self.premultiplied && a > 0.0 && a < 1.0 { [r / a, g / a, b / a, a] } else { [r, g, b, a] }
+    }
+
+    /// All texels: `colour` of the linear colours, and `alpha` of alpha. Colours are as [`ImageFile::straight`] has them, or as [`ImageFile::linear`].
     pub(crate) fn decode(
         &self,
+        straight: bool,
         colour: impl Fn(f32) -> f16 + Sync,
         alpha: impl Fn(f32) -> f16 + Sync,
     ) -> Vec<[f16; 4]> {
-        if let Texels::Eight(data) = &self.texels {
+        if let (Texels::Eight(data), None, None) = (&self.texels, &self.table, &self.matrix) {
             let colours: Vec<f16> = LINEAR_8.iter().map(|value| colour(*value)).collect();
             let alphas: Vec<f16> = (0..=u8::MAX).map(|code| alpha(f32::from(code) / 255.0)).collect();
             let [colour, alpha] = [&colours, &alphas].map(|table| |code: u8| table[usize::from(code)]);
@@ -167,7 +285,7 @@ impl ImageFile {
             return data.par_chunks_exact(4).with_min_len(CHUNK).map(texel).collect();
         }
         let texel = |texel| {
-            let [r, g, b, a] = self.linear(texel);
+            let [r, g, b, a] = if straight { self.straight(texel) } else { self.linear(texel) };
             [colour(r), colour(g), colour(b), alpha(a)]
         };
         (0..self.len()).into_par_iter().with_min_len(CHUNK).map(texel).collect()
@@ -223,14 +341,38 @@ mod tests {
         assert_eq!(check_memory((100, 10), 3000, 1, None), Ok(()));
     }
 
+    fn image(width: u32, texels: Texels) -> ImageFile {
+        ImageFile {
+            width,
+            height: 1,
+            has_alpha: true,
+            warnings: vec![],
+            cube: false,
+            premultiplied: true,
+            texels,
+            table: None,
+            matrix: None,
+        }
+    }
+
+    #[test]
+    fn premultiplied_colours_are_divided_where_that_is_asked_for() {
+        let texels = vec![0.1, 0.2, 0.4, 0.5, 3.0, 0.0, 1.0, 0.0, 0.3, 0.3, 0.3, 1.0];
+        let image = image(3, Texels::Float(texels));
+        let found = [0, 1, 2].map(|texel| image.straight(texel));
+        assert_eq!(found, [[0.2, 0.4, 0.8, 0.5], [3.0, 0.0, 1.0, 0.0], [0.3, 0.3, 0.3, 1.0]]);
+        let decoded = |straight| image.decode(straight, f16::from_f32, f16::from_f32)[0][0].to_f32();
+        assert!((decoded(true) - 0.2).abs() < 1e-3 && (decoded(false) - 0.1).abs() < 1e-3);
+    }
+
     #[test]
     fn tables_hold_what_the_formula_gives() {
         let eight: Vec<u8> = (0..=255).collect();
         let sixteen: Vec<u16> = (0..=u16::MAX).collect();
         let texels = [(64, 255.0, Texels::Eight(eight)), (16_384, 65_535.0, Texels::Sixteen(sixteen))];
         for (width, largest, texels) in texels {
-            let image = ImageFile { width, height: 1, has_alpha: true, texels };
-            let decoded = image.decode(f16::from_f32, f16::from_f32);
+            let image = image(width, texels);
+            let decoded = image.decode(false, f16::from_f32, f16::from_f32);
             assert_eq!(decoded.len(), width as usize);
             for (texel, decoded) in decoded.iter().enumerate() {
                 let codes: [f32; 4] = std::array::from_fn(|channel| (4 * texel + channel) as f32 / largest);

@@ -3,7 +3,10 @@
 use std::io::Read;
 use std::path::Path;
 
-/// The first four bytes of a regular file, or fewer if it has no more.
+/// So many are enough for every format.
+const MOST: u64 = 256;
+
+/// The first bytes of a regular file: all of it if it has no more than a few.
 ///
 /// # Errors
 /// In words that can follow the file's name: it cannot be read, or is a folder, a pipe or a device.
@@ -15,6 +18,6 @@ pub(super) fn first_bytes(path: &Path) -> Result<Vec<u8>, String> {
     }
     let mut start = Vec::new();
     let file = std::fs::File::open(path).map_err(|e| e.to_string())?;
-    file.take(4).read_to_end(&mut start).map_err(|e| e.to_string())?;
+    file.take(MOST).read_to_end(&mut start).map_err(|e| e.to_string())?;
     Ok(start)
 }

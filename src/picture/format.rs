@@ -28,14 +28,32 @@ impl Format {
             Some("exr") => Ok(Format::Exr),
             Some("hdr") => Ok(Format::Hdr),
             Some(other) => Err(Error::Usage(format!(
-                "{}: a picture cannot be written as .{other}: choose .png, .exr or .hdr",
-                path.display()
+                "{}: a picture cannot be written as .{other}: choose .png, .exr or .hdr{}",
+                path.display(),
+                conversion(&other)
             ))),
             None => Err(Error::Usage(format!(
                 "{}: the name has no ending that says which format to write: add .png, .exr or .hdr",
                 path.display()
             ))),
         }
+    }
+}
+
+/// How a picture of another ending is made of one that is written, for those that people ask for.
+fn conversion(ending: &str) -> String {
+    match ending {
+        "jpg" | "jpeg" | "webp" | "gif" | "bmp" | "tga" | "ppm" | "avif" | "heic" | "jxl" | "dds" | "pdf" => {
+            format!(", and convert that, for example with `magick a.png a.{ending}`")
+        }
+        "tif" | "tiff" | "pfm" | "dpx" | "tx" | "psd" | "jp2" => {
+            format!(", and convert that, for example with `oiiotool a.exr -o a.{ending}`")
+        }
+        "pic" | "rgbe" => ": .hdr is this format".into(),
+        "mp4" | "mov" | "avi" | "webm" => {
+            ", a picture for each frame, for example for `ffmpeg -i frame%04d.png a.mp4`".into()
+        }
+        _ => String::new(),
     }
 }
 

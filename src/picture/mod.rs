@@ -2,11 +2,17 @@
 //! as textures and environments.
 
 pub(crate) mod decode;
+mod encoding;
 mod first_bytes;
+mod foreign;
 mod format;
+mod icc;
 mod openexr;
 mod pfm;
 mod pixels;
+mod png_colours;
+mod primaries;
+mod radiance;
 mod read;
 mod srgb;
 mod write;

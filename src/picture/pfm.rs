@@ -73,7 +73,7 @@ pub(super) fn open(path: &Path) -> Result<Picture, String> {
             },
         )
         .collect();
-    Ok(Picture { width: width as u32, height: height as u32, rgb, error: None, clamped: false })
+    Ok(Picture { width: width as u32, height: height as u32, rgb, error: None, clamped: false, warnings: vec![] })
 }
 
 #[cfg(test)]

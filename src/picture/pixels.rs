@@ -16,6 +16,8 @@ pub struct Picture {
     pub error: Option<Vec<[f32; 3]>>,
     /// Whether the file holds whole numbers, which end at white; they have been decoded as sRGB.
     pub clamped: bool,
+    /// What in the file was guessed or ignored, in words that can follow its name.
+    pub warnings: Vec<String>,
 }
 
 /// Why a picture is refused that says it is enormous.

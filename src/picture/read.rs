@@ -2,14 +2,14 @@
 
 use super::decode::ImageFile;
 use super::first_bytes::first_bytes;
-use super::openexr::{self, Opened, Several};
+use super::openexr::{self, Opened};
 use super::pfm;
 use super::pixels::{MOST_PIXELS, Picture};
 use crate::{Error, Result};
 use std::path::Path;
 
 /// Reads an EXR, PFM or HDR file, or what the `image` crate decodes besides (PNG, JPEG, TIFF, ...); the content says which, not the name.
-/// Grey becomes RGB. Where there is alpha, the picture is put on black.
+/// Grey becomes RGB, and other primaries those of sRGB. Where there is alpha, the picture is put on black.
 ///
 /// # Errors
 /// [`Error::Read`] if the file cannot be read, is no image, is damaged or truncated, has no pixels, or more than 2^28.
@@ -21,7 +21,7 @@ fn decode(path: &Path) -> std::result::Result<Picture, String> {
     let start = first_bytes(path)?;
     match start[..] {
         [] => return Err("it is empty".into()),
-        _ if start == openexr::MAGIC => return Opened::new(path, Several::Refused)?.picture(),
+        _ if start.starts_with(&openexr::MAGIC) => return Opened::new(path)?.picture(),
         [b'P', b'F' | b'f', space, ..] if space.is_ascii_whitespace() => return pfm::open(path),
         _ => {}
     }
@@ -36,6 +36,7 @@ fn decode(path: &Path) -> std::result::Result<Picture, String> {
         rgb: (0..image.len()).map(rgb).collect(),
         error: None,
         clamped: !image.is_float(),
+        warnings: image.warnings,
     })
 }
 

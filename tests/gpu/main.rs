@@ -12,6 +12,7 @@ mod error_bar;
 mod estimators;
 mod fallback;
 mod features;
+mod files;
 mod functions;
 mod intersection;
 mod maps;

@@ -4,6 +4,7 @@ mod hostile;
 mod mtl;
 mod obj;
 mod own_scenes;
+mod pictures;
 mod polygons;
 mod settings;
 mod smoothing;

@@ -57,7 +57,7 @@ fn a_bad_mtl_is_a_warning_with_its_line() {
     assert_eq!(first_material(&scene).ambient, Vec3::ZERO);
     for (line, words) in [
         (1, "newmtl"),
-        (3, "`0.1 x 0.3`"),
+        (3, "three finite numbers, found `0.1 x 0.3`"),
         (4, "`0.1 0.2`"),
         (5, "Ns"),
         (6, "negative"),
@@ -146,7 +146,88 @@ fn illum_4_6_7_and_9_are_glass() {
     }
     let (m, warnings) = read("Kd .5 .5 .5\nNi 1.5\nillum 7");
     assert!((m.lambert.x - 1.0 / 3.0).abs() < 1e-6 && (m.transmission.x - 2.0 / 3.0).abs() < 1e-6, "{m:?}");
-    assert!(warnings[0].contains("create energy"), "{warnings:?}");
+    assert!(warnings.len() == 2 && warnings[1].contains("create energy"), "{warnings:?}");
+    assert!(
+        ["mesh.mtl", "`m`", "illum 7", "Ni 1.5", "Kd"].iter().all(|word| warnings[0].contains(word)),
+        "{warnings:?}"
+    );
+}
+
+/// Exporters write one of glass's models for everything; a material with a colour is glass only by its index of refraction.
+#[test]
+fn a_colour_without_refraction_is_opaque_whatever_illum_says() {
+    for illum in [4, 6, 7, 9] {
+        for more in
+            ["", "Ni 1\n", "Ni 1.00\nd 1\n", "Ni 0\nTr 0\n", "Tf 1 1 1\nNi 1\n", "Tf 0 0 0\nNi 1.45\nd 1\n", "Tr 1\n"]
+        {
+            let (m, warnings) = read(&format!("illum {illum}\nKd .5 .4 .3\nKs .1 .1 .1\nNs 20\n{more}"));
+            assert_eq!((m.lambert, m.glossy, m.opacity), (Vec3::new(0.5, 0.4, 0.3), Vec3::splat(0.1), 1.0), "{more}");
+            assert_eq!((m.transmission, m.reflection, m.eta), (Vec3::ZERO, Vec3::ZERO, None), "{more}");
+            let said = |word: &str| warnings.iter().any(|warning| warning.contains(word));
+            assert!(said(&format!("illum {illum} asks for glass")) && said("taken as opaque"), "{more}: {warnings:?}");
+            assert_eq!(warnings.len(), 1 + usize::from(more.starts_with("Tr 1")), "{more}: {warnings:?}");
+        }
+        // As of Blender where alpha is below 1.
+        for more in ["d 0.25\nNi 1.45\n", "Tr 0.75\n", "d 0.25\nNi 1\n"] {
+            let (m, warnings) = read(&format!("illum {illum}\nKd .5 .4 .3\n{more}"));
+            assert_eq!((m.opacity, m.transmission, m.eta, m.lambert.x), (0.25, Vec3::ZERO, None, 0.5), "{more}");
+            assert!(
+                warnings.len() == 1 && warnings[0].contains("opacity") && warnings[0].contains("illum"),
+                "{warnings:?}"
+            );
+        }
+    }
+    let text: String = (0..3).map(|i| format!("newmtl m{i}\nillum 4\nKd .5 .5 .5\n")).collect();
+    let faces: String = (0..3).map(|i| format!("usemtl m{i}\nf 1 2 3\n")).collect();
+    let scene = obj(format!("mtllib mesh.mtl\n{TRIANGLE}{faces}")).with("mesh.mtl", text).load("mesh.obj");
+    warned(&scene, &["mesh.mtl: materials `m0`, `m1`, `m2`: illum 4"]);
+    assert_eq!(scene.warnings.iter().filter(|warning| warning.contains("illum")).count(), 1, "one for all of them");
+}
+
+#[test]
+fn tr_of_1_alone_is_opaque() {
+    for tr in ["Tr 1", "Tr 1.000000", "Tr 100", "illum 2\nTr 1"] {
+        let (m, warnings) = read(&format!("Kd .5 .5 .5\n{tr}"));
+        assert_eq!(m.opacity, 1.0, "{tr}");
+        assert!(warnings.len() == 1, "{warnings:?}");
+        assert!(["`m`: Tr 1", "`d 1`", "`d 0`"].iter().all(|word| warnings[0].contains(word)), "{warnings:?}");
+    }
+    for (statements, opacity, count) in
+        [("Tr 0", 1.0, 0), ("d 1\nTr 0", 1.0, 0), ("Tr 0.25", 0.75, 0), ("d 0\nTr 1", 0.0, 1), ("d 1\nTr 1", 1.0, 1)]
+    {
+        let (m, warnings) = read(&format!("Kd .5 .5 .5\n{statements}"));
+        assert_eq!((m.opacity, warnings.len()), (opacity, count), "{statements}: {warnings:?}");
+    }
+}
+
+#[test]
+fn colours_of_other_shapes() {
+    for (statement, lambert, word) in [
+        ("Kd .5 .4 .3 1.0", Some([0.5, 0.4, 0.3]), "`1.0` is ignored"),
+        ("Kd .5 .4 .3 a b", Some([0.5, 0.4, 0.3]), "`a b` is ignored"),
+        ("Kd 0,5 0,4 0,3", None, "decimal point"),
+        ("Kd 0.5,0.4,0.3", None, "decimal point"),
+        ("Kd xyz .1 .2 .3", None, "Kd xyz is not modelled"),
+        ("Kd spectral a.rfl 1", None, "Kd spectral is not modelled"),
+    ] {
+        let (m, warnings) = read(statement);
+        assert_eq!(m.lambert.to_array(), lambert.unwrap_or([0.8; 3]), "{statement}");
+        assert!(
+            warnings.len() == 1 && warnings[0].contains("mesh.mtl:2: Kd") && warnings[0].contains(word),
+            "{warnings:?}"
+        );
+    }
+    assert_eq!((read("Kd 0.5").0.lambert, read("Kd 0.5").1.len()), (Vec3::splat(0.5), 0), "one number is grey");
+    for keyword in ["Ka", "Ks", "Ke", "Tf"] {
+        let (_, warnings) = read(&format!("Ns 1\n{keyword} .1 .1 .1 1"));
+        assert!(warnings.len() == 1 && warnings[0].contains(&format!("{keyword} has more")), "{warnings:?}");
+    }
+    let (m, warnings) = read("Kd 255 128 0");
+    assert!(m.lambert.abs_diff_eq(Vec3::new(1.0, 128.0 / 255.0, 0.0), 1e-5), "{m:?}");
+    assert!(warnings[0].contains("mesh.mtl:2: Kd 255") && warnings[0].contains("divided by 255"), "{warnings:?}");
+    assert!(read("Ke 255 128 0").1.is_empty(), "what emits may have any number");
+    assert!(read("d 7").1[0].contains("d 7 is outside") && read("Tr -1").1[0].contains("Tr -1 is outside"));
+    assert!(read("Ns 5 6").1[0].contains("`6` is ignored"));
 }
 
 #[test]

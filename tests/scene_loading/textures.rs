@@ -6,20 +6,20 @@ use image::{DynamicImage, ImageFormat, RgbImage, RgbaImage};
 use luminaire::scene::Texture;
 
 /// The triangle with texture coordinates, and an MTL of one material.
-fn textured(mtl: &str) -> Folder {
+pub(super) fn textured(mtl: &str) -> Folder {
     obj("mtllib mesh.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n")
         .with("mesh.mtl", format!("newmtl m\n{mtl}\n"))
 }
 
 impl Folder {
-    fn image(self, name: &str, image: impl Into<DynamicImage>) -> Self {
+    pub(super) fn image(self, name: &str, image: impl Into<DynamicImage>) -> Self {
         std::fs::create_dir_all(self.path(name).parent().expect("inside the folder")).expect("a folder");
         image.into().save(self.path(name)).expect("an image");
         self
     }
 }
 
-fn rgba(texels: &[[u8; 4]]) -> RgbaImage {
+pub(super) fn rgba(texels: &[[u8; 4]]) -> RgbaImage {
     RgbaImage::from_raw(texels.len() as u32, 1, texels.concat()).expect("a size")
 }
 
@@ -27,12 +27,12 @@ fn rgb(texels: &[[u8; 3]]) -> RgbImage {
     RgbImage::from_raw(texels.len() as u32, 1, texels.concat()).expect("a size")
 }
 
-fn texel(texture: &Texture, index: usize) -> [f32; 4] {
+pub(super) fn texel(texture: &Texture, index: usize) -> [f32; 4] {
     texture.texels[index].map(|channel| channel.to_f32())
 }
 
 /// The diffuse texture of the first material.
-fn diffuse(scene: &Scene) -> &Texture {
+pub(super) fn diffuse(scene: &Scene) -> &Texture {
     &scene.textures[first_material(scene).maps.lambert.expect("a map") as usize]
 }
 

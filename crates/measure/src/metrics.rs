@@ -195,7 +195,14 @@ mod tests {
     use super::*;
 
     fn picture(width: u32, rgb: &[[f32; 3]]) -> Picture {
-        Picture { width, height: rgb.len() as u32 / width, rgb: rgb.into(), error: None, clamped: false }
+        Picture {
+            width,
+            height: rgb.len() as u32 / width,
+            rgb: rgb.into(),
+            error: None,
+            clamped: false,
+            warnings: vec![],
+        }
     }
 
     fn near(found: f64, expected: f64) {

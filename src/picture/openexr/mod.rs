@@ -1,11 +1,12 @@
 //! OpenEXR: pictures of floats, with the standard error of every pixel beside them.
 
 mod channels;
+mod choice;
 mod picture;
 mod writer;
 
 pub(crate) use channels::{read_channels, read_texts};
-pub(super) use picture::{Opened, Several};
+pub(super) use picture::Opened;
 pub use writer::{Attribute, Exr};
 
 /// The bytes with which a file begins.

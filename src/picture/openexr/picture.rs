@@ -1,20 +1,16 @@
 //! Reads the picture of an OpenEXR file that any program may have written.
 
-use super::{ERROR, in_words};
+use super::choice::Choice;
+use super::in_words;
 use crate::picture::pixels::{MOST_PIXELS, Picture, too_large};
+use crate::picture::primaries::Primaries;
+use ::exr::math::Vec2;
 use ::exr::meta::MetaData;
+use ::exr::meta::attribute::EnvironmentMap;
 use ::exr::meta::header::Header;
 use ::exr::prelude::{ReadChannels, ReadLayers, ReadSpecificChannel, read};
+use glam::{DMat3, DVec2, DVec3};
 use std::path::Path;
-
-/// What to do with a file that holds several pictures.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::picture) enum Several {
-    /// Nobody knows which one is meant.
-    Refused,
-    /// The first part with R, G and B is meant.
-    First,
-}
 
 /// A file of which the head was read.
 #[derive(Debug)]
@@ -24,16 +20,11 @@ pub(in crate::picture) struct Opened<'a> {
     window: Window,
     /// Blocks of the part with the picture.
     chunks: u64,
-}
-
-/// Which channels of a file are the picture.
-#[derive(Debug, PartialEq)]
-struct Choice {
-    part: usize,
-    /// Red, green and blue, which are one and the same if there is only luminance.
-    rgb: [String; 3],
-    alpha: Option<String>,
-    error: Option<[String; 3]>,
+    /// From its primaries to those of sRGB.
+    matrix: Option<DMat3>,
+    cube: bool,
+    /// What was guessed or ignored, in words that can follow the file's name.
+    pub warnings: Vec<String>,
 }
 
 impl<'a> Opened<'a> {
@@ -41,18 +32,18 @@ impl<'a> Opened<'a> {
     ///
     /// # Errors
     /// In words that can follow the file's name.
-    pub(in crate::picture) fn new(path: &'a Path, several: Several) -> Result<Self, String> {
+    pub(in crate::picture) fn new(path: &'a Path) -> Result<Self, String> {
         let meta = MetaData::read_from_file(path, false).map_err(in_words)?;
-        let choice = choose(&meta.headers, several)?;
-        let window = Window::new(&meta.headers[choice.part])?;
-        // The library takes the first part that has the channel.
-        let red = &choice.rgb[0];
-        let has_red = |header: &Header| header.channels.list.iter().any(|channel| channel.name.to_string() == *red);
-        if meta.headers[..choice.part].iter().any(has_red) {
-            return Err(format!("several of its parts have a channel {red}: write the picture to a file of its own"));
-        }
+        let mut warnings = Vec::new();
+        let choice = Choice::new(&meta.headers, &mut warnings)?;
         let header = &meta.headers[choice.part];
-        Ok(Opened { path, choice, window, chunks: header.chunk_count as u64 })
+        let window = Window::new(header)?;
+        let matrix = primaries(header).map_or(Ok(None), Primaries::to_srgb).unwrap_or_else(|why| {
+            warnings.push(format!("its chromaticities {why}; they are taken as those of sRGB"));
+            None
+        });
+        let cube = header.own_attributes.environment_map == Some(EnvironmentMap::Cube);
+        Ok(Opened { path, window, chunks: header.chunk_count as u64, matrix, cube, warnings, choice })
     }
 
     /// Width and height in pixels.
@@ -65,7 +56,22 @@ impl<'a> Opened<'a> {
         self.choice.alpha.is_some()
     }
 
-    /// The picture. Integers are taken as the numbers they are, luminance alone as grey; alpha is left out, since colours are stored as
+    /// The matrix to linear sRGB, where the file has other primaries.
+    pub(in crate::picture) fn matrix(&self) -> Option<DMat3> {
+        self.matrix
+    }
+
+    /// Whether the file says that it holds the six sides of a cube.
+    pub(in crate::picture) fn is_cube(&self) -> bool {
+        self.cube
+    }
+
+    /// A warning if not all of the pixels that are shown are stored.
+    pub(in crate::picture) fn cropped(&self) -> Option<String> {
+        self.window.check_whole().err().map(|why| format!("{why}; 0 is used outside"))
+    }
+
+    /// The picture, in sRGB's primaries. Integers are taken as the numbers they are, luminance alone as grey; alpha is left out, since colours are stored as
     /// they are over black.
     ///
     /// # Errors
@@ -78,11 +84,21 @@ impl<'a> Opened<'a> {
         }
         self.window.check_whole()?;
         let colours = |names: &[String; 3]| self.read(names, None, |[r, g, b, _]| [r, g, b]);
-        let (rgb, error) = (colours(&self.choice.rgb)?, self.choice.error.as_ref().map(colours).transpose()?);
-        Ok(Picture { width, height, rgb, error, clamped: false })
+        let (mut rgb, mut error) = (colours(&self.choice.rgb)?, self.choice.error.as_ref().map(colours).transpose()?);
+        let mut warnings = self.warnings.clone();
+        if let Some(matrix) = self.matrix {
+            // A grey is a grey.
+            rgb.iter_mut().filter(|rgb| **rgb != [rgb[0]; 3]).for_each(|rgb| {
+                *rgb = (matrix * DVec3::from(rgb.map(f64::from))).as_vec3().to_array();
+            });
+            if error.take().is_some() {
+                warnings.push("its error channels are ignored: they are those of other primaries".into());
+            }
+        }
+        Ok(Picture { width, height, rgb, error, clamped: false, warnings })
     }
 
-    /// Red, green, blue and alpha (1 in a file without it) of every pixel. Outside of a crop all that are there are 0.
+    /// Red, green, blue, in the file's own primaries, and alpha (1 in a file without it) of every pixel. Outside of a crop all that are there are 0.
     ///
     /// # Errors
     /// In words that can follow the file's name.
@@ -105,25 +121,37 @@ impl<'a> Opened<'a> {
         let window = self.window;
         let outside = pixel([0.0, 0.0, 0.0, if alpha.is_some() { 0.0 } else { 1.0 }]);
         let [r, g, b] = names.each_ref().map(|name| &name[..]);
-        // The library wants different names. No channel has these, so that what is asked for has the value that stands beside it.
-        let grey = r == g;
-        let [g, b] = if grey { ["no channel: green", "no channel: blue"] } else { [g, b] };
-        let image = read()
-            .no_deep_data()
-            .largest_resolution_level()
-            .specific_channels()
-            .required(r)
-            .optional(g, 0.0)
-            .optional(b, 0.0)
-            .optional(alpha.unwrap_or("no channel: alpha"), 1.0)
+        let empty = move || vec![outside; window.width * window.height];
+        let store = move |pixels: &mut Vec<T>, at: Vec2<usize>, rgba| {
+            if let Some(index) = window.index(at.x(), at.y()) {
+                pixels[index] = pixel(rgba);
+            }
+        };
+        // No channel has this name, so that every pixel has the value that stands beside it.
+        let alpha = alpha.unwrap_or("no channel: alpha");
+        // The library takes the first part that has all that is required, and so does `Choice`.
+        let channels = read().no_deep_data().largest_resolution_level().specific_channels().required(r);
+        // It wants different names.
+        if r == g {
+            let image = channels
+                .optional(alpha, 1.0)
+                .collect_pixels(
+                    move |_, _| empty(),
+                    move |pixels, at, (y, a): (f32, f32)| store(pixels, at, [y, y, y, a]),
+                )
+                .first_valid_layer()
+                .all_attributes()
+                .from_file(self.path)
+                .map_err(in_words)?;
+            return Ok(image.layer_data.channel_data.pixels);
+        }
+        let image = channels
+            .required(g)
+            .required(b)
+            .optional(alpha, 1.0)
             .collect_pixels(
-                move |_, _| vec![outside; window.width * window.height],
-                move |pixels: &mut Vec<T>, at, (r, g, b, a): (f32, f32, f32, f32)| {
-                    if let Some(index) = window.index(at.x(), at.y()) {
-                        let [g, b] = if grey { [r; 2] } else { [g, b] };
-                        pixels[index] = pixel([r, g, b, a]);
-                    }
-                },
+                move |_, _| empty(),
+                move |pixels, at, (r, g, b, a): (f32, f32, f32, f32)| store(pixels, at, [r, g, b, a]),
             )
             .first_valid_layer()
             .all_attributes()
@@ -133,59 +161,11 @@ impl<'a> Opened<'a> {
     }
 }
 
-/// Finds the picture: R, G and B, else Y, without a prefix; else the only ones with a prefix.
-fn choose(headers: &[Header], several: Several) -> Result<Choice, String> {
-    let names = |part: usize| headers[part].channels.list.iter().map(|c| c.name.to_string());
-    let mut groups: Vec<(usize, String, bool)> = Vec::new();
-    for part in 0..headers.len() {
-        let has = |name: String| names(part).any(|n| n == name);
-        for name in names(part) {
-            let prefix = name.strip_suffix('R').or(name.strip_suffix('Y')).filter(|p| p.is_empty() || p.ends_with('.'));
-            let Some(prefix) = prefix else { continue };
-            let colour = ["R", "G", "B"].iter().all(|c| has(format!("{prefix}{c}")));
-            if colour == name.ends_with('R') && prefix != ERROR {
-                groups.push((part, prefix.into(), colour));
-            }
-        }
-    }
-    let plain: Vec<_> = groups.iter().filter(|(_, prefix, _)| prefix.is_empty()).collect();
-    let (part, prefix, colour) = match (&plain[..], &groups[..]) {
-        ([one], _) => *one,
-        ([first, ..], _) if several == Several::First => plain.iter().find(|(.., colour)| *colour).unwrap_or(first),
-        ([], [one]) => one,
-        ([], []) => {
-            let all: Vec<String> = (0..headers.len()).flat_map(names).collect();
-            return Err(format!("it has neither the channels R, G and B nor Y, but {}", all.join(", ")));
-        }
-        _ => {
-            let named = |(part, prefix, _): &(usize, String, bool)| {
-                let layer =
-                    headers[*part].own_attributes.layer_name.as_ref().map(ToString::to_string).unwrap_or_default();
-                format!("`{}`", format!("{layer}.{prefix}").trim_matches('.'))
-            };
-            let all: Vec<String> = groups.iter().map(named).collect();
-            return Err(format!(
-                "it holds several pictures ({}): write one of them to a file of its own",
-                all.join(", ")
-            ));
-        }
-    };
-    let three = |prefix: &str| ["R", "G", "B"].map(|c| format!("{prefix}{c}"));
-    let rgb = if *colour { three(prefix) } else { [0; 3].map(|_| format!("{prefix}Y")) };
-    let error =
-        Some(three(ERROR)).filter(|error| prefix.is_empty() && error.iter().all(|e| names(*part).any(|n| n == *e)));
-    for channel in &headers[*part].channels.list {
-        let name = channel.name.to_string();
-        if rgb.contains(&name) && channel.sampling != ::exr::math::Vec2(1, 1)
-            || !colour && ["RY", "BY"].contains(&&*name)
-        {
-            return Err(format!(
-                "its channel {name} does not have a value for every pixel (subsampled chroma?): convert the picture to RGB"
-            ));
-        }
-    }
-    let alpha = Some(format!("{prefix}A")).filter(|alpha| names(*part).any(|name| name == *alpha));
-    Ok(Choice { part: *part, rgb, alpha, error })
+/// The primaries that a file states.
+fn primaries(header: &Header) -> Option<Primaries> {
+    let stated = header.shared_attributes.chromaticities?;
+    let point = |at: Vec2<f32>| DVec2::new(at.x().into(), at.y().into());
+    Some(Primaries { rgb: [stated.red, stated.green, stated.blue].map(point), white: point(stated.white) })
 }
 
 /// Where the stored pixels lie and which are shown.

@@ -2,10 +2,11 @@
 
 use super::*;
 use crate::picture::Picture;
+use crate::picture::decode::ImageFile;
 use ::exr::image::write::WritableImage;
 use ::exr::math::Vec2;
 use ::exr::meta::MetaData;
-use ::exr::meta::attribute::IntegerBounds;
+use ::exr::meta::attribute::{Chromaticities, IntegerBounds};
 use ::exr::prelude::{
     AnyChannel, AnyChannels, AttributeValue, Blocks, Compression, Encoding, FlatSamples, Image, ImageAttributes, Layer,
     LayerAttributes, LineOrder, Text,
@@ -19,7 +20,7 @@ fn opened(bytes: &[u8]) -> Result<Picture, String> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.exr");
     std::fs::write(&path, bytes).unwrap();
-    Opened::new(&path, Several::Refused)?.picture()
+    Opened::new(&path)?.picture()
 }
 
 fn rgb() -> Vec<[f32; 3]> {
@@ -107,10 +108,29 @@ fn the_picture_is_found_among_layers() {
     assert_eq!(red(&plain(vec![part("a", &["Z", "R", "G", "B", "depth.R", "Y"])])), Ok([11.0, 21.0, 31.0]));
     assert_eq!(red(&plain(vec![part("a", &["x", "view.R", "view.G", "view.B"])])), Ok([11.0, 21.0, 31.0]));
     assert_eq!(red(&plain(vec![part("depth", &["Z"]), part("b", &["R", "G", "B"])])), Ok([1.0, 11.0, 21.0]));
+    // Lower case, but not beside upper case; a vector is no luminance.
+    assert_eq!(red(&plain(vec![part("a", &["r", "g", "b", "a"])])), Ok([1.0, 11.0, 21.0]));
+    assert_eq!(red(&plain(vec![part("a", &["id.r", "id.g", "id.b", "Y"])])), Ok([31.0; 3]));
+    assert_eq!(red(&plain(vec![part("a", &["N.X", "N.Y", "N.Z", "l.R", "l.G", "l.B"])])), Ok([31.0, 41.0, 51.0]));
+    // The library takes the first part that has what is asked for.
+    assert_eq!(red(&plain(vec![part("a", &["R"]), part("b", &["R", "G", "B"])])), Ok([1.0, 11.0, 21.0]));
     let says = |bytes: &[u8], what: &str| assert!(red(bytes).unwrap_err().contains(what), "{:?}", red(bytes));
     says(&plain(vec![part("a", &["R", "G", "Z"])]), "neither the channels R, G and B nor Y, but G, R, Z");
-    says(&plain(vec![part("left", &["Y"]), part("right", &["R", "G", "B"])]), "several pictures (`left`, `right`)");
-    says(&plain(vec![part("a", &["c.R", "c.G", "c.B", "d.Y"])]), "several pictures (`a.c`, `a.d`)");
+    let warns = |parts: Vec<Part>, expected: [f32; 3], what: &str| {
+        let picture = opened(&plain(parts)).unwrap();
+        assert!(picture.warnings.len() == 1 && picture.warnings[0].contains(what), "{:?}", picture.warnings);
+        assert_eq!(picture.rgb[1], expected);
+    };
+    warns(
+        vec![part("left", &["Y"]), part("right", &["R", "G", "B"])],
+        [1.0, 11.0, 21.0],
+        "`right` is used, not `left`",
+    );
+    warns(vec![part("l", &["R", "G", "B"]), part("r", &["R", "G", "B"])], [1.0, 11.0, 21.0], "`l` is used, not `r`");
+    warns(vec![part("a", &["c.R", "c.G", "c.B", "d.Y"])], [1.0, 11.0, 21.0], "`a.c` is used, not `a.d`");
+    let blender = ["V.DiffDir.R", "V.DiffDir.G", "V.DiffDir.B", "V.Combined.R", "V.Combined.G", "V.Combined.B"];
+    warns(vec![part("V", &blender)], [31.0, 41.0, 51.0], "`V.Combined` is used, not `V.DiffDir`;");
+    says(&plain(vec![part("a", &["x.Y", "x.RY", "x.BY"])]), "x.");
     says(&plain(vec![part("a", &["Y", "RY", "BY"])]), "convert the picture to RGB");
 }
 
@@ -161,19 +181,106 @@ fn four_channels() {
     let path = folder.path().join("a.exr");
     let rgba = |bytes: &[u8]| {
         std::fs::write(&path, bytes).unwrap();
-        let opened = Opened::new(&path, Several::First).unwrap();
+        let opened = Opened::new(&path).unwrap();
         (opened.size(), opened.has_alpha(), opened.rgba().unwrap())
     };
     let (size, alpha, texels) = rgba(&plain(vec![part("a", &["R", "G", "B", "A"])]));
     assert_eq!((size, alpha, &texels[4..8]), ((3, 2), true, &[1.0, 11.0, 21.0, 31.0][..]));
     let (_, alpha, texels) = rgba(&plain(vec![part("a", &["Y"]), part("b", &["R", "G", "B"])]));
     assert_eq!((alpha, &texels[4..8]), (false, &[1.0, 11.0, 21.0, 1.0][..]));
-    std::fs::write(&path, plain(vec![part("a", &["R"]), part("b", &["R", "G", "B"])])).unwrap();
-    assert!(Opened::new(&path, Several::First).unwrap_err().contains("several of its parts have a channel R"));
+    let (_, alpha, texels) = rgba(&plain(vec![part("a", &["Y", "A"])]));
+    assert_eq!((alpha, &texels[4..8]), (true, &[1.0, 1.0, 1.0, 11.0][..]));
     let mut layer = part("a", &["R", "G", "B", "A"]);
     layer.attributes.layer_position = Vec2(1, -1);
     // Its lower row lies in the upper one of what is shown, one to the right.
     let (size, _, texels) = rgba(&file(IntegerBounds::new((0, 0), (2, 2)), vec![layer]));
     assert_eq!((size, &texels[..8]), ((2, 2), &[0.0, 0.0, 0.0, 0.0, 3.0, 13.0, 23.0, 33.0][..]));
     assert_eq!(texels[8..], [0.0; 8]);
+}
+
+/// A file with these chromaticities: x and y of red, green, blue and white.
+fn with_primaries(channels: &[&str], [rx, ry, gx, gy, bx, by, wx, wy]: [f32; 8]) -> Vec<u8> {
+    let mut bytes = Cursor::new(Vec::new());
+    let mut attributes = ImageAttributes::new(IntegerBounds::new((0, 0), (3, 2)));
+    let [red, green, blue, white] = [Vec2(rx, ry), Vec2(gx, gy), Vec2(bx, by), Vec2(wx, wy)];
+    attributes.chromaticities = Some(Chromaticities { red, green, blue, white });
+    let image: Image<::exr::image::Layers<_>> = Image::from_layers(attributes, vec![part("a", channels)]);
+    image.write().to_buffered(&mut bytes).unwrap();
+    bytes.into_inner()
+}
+
+const ACES_CG: [f32; 8] = [0.713, 0.293, 0.165, 0.830, 0.128, 0.044, 0.32168, 0.33767];
+
+#[test]
+fn other_primaries_become_those_of_srgb() {
+    // The published matrix from ACEScg to sRGB, times 1, 11, 21.
+    let picture = opened(&with_primaries(&["R", "G", "B"], ACES_CG)).unwrap();
+    let expected = [1.7051 - 6.8397 - 1.7484, -0.1303 + 12.5489 - 0.2215, -0.0240 - 1.4187 + 24.2124];
+    let near = |found: [f32; 3]| found.iter().zip(expected).all(|(f, e): (&f32, f32)| (f - e).abs() < 2e-3);
+    assert!(near(picture.rgb[1]) && picture.warnings.is_empty(), "{picture:?}");
+    // A texture has them by the same matrix.
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.exr");
+    let image = |bytes: Vec<u8>| {
+        std::fs::write(&path, bytes).unwrap();
+        ImageFile::open(&path, 100, |_| String::new()).unwrap()
+    };
+    let [r, g, b, _] = image(with_primaries(&["R", "G", "B"], ACES_CG)).linear(1);
+    assert!(near([r, g, b]), "{r} {g} {b}");
+    // Luminance is grey in any primaries, and those of sRGB change nothing.
+    assert_eq!(image(with_primaries(&["Y"], ACES_CG)).linear(1), [1.0; 4]);
+    let srgb = [0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329];
+    assert_eq!(image(with_primaries(&["R", "G", "B"], srgb)).linear(1), [1.0, 11.0, 21.0, 1.0]);
+    let odd = opened(&with_primaries(&["R", "G", "B"], [0.0; 8])).unwrap();
+    assert!(odd.rgb[1] == [1.0, 11.0, 21.0] && odd.warnings[0].contains("chromaticities are no colours"), "{odd:?}");
+    let error = ["B", "G", "R", "error.B", "error.G", "error.R"];
+    let picture = opened(&with_primaries(&error, ACES_CG)).unwrap();
+    assert!(picture.error.is_none() && picture.warnings[0].contains("error channels"), "{:?}", picture.warnings);
+}
+
+#[test]
+fn any_order_of_lines() {
+    for (line_order, blocks) in [
+        (LineOrder::Increasing, Blocks::ScanLines),
+        (LineOrder::Decreasing, Blocks::ScanLines),
+        (LineOrder::Increasing, Blocks::Tiles(Vec2(2, 1))),
+        (LineOrder::Decreasing, Blocks::Tiles(Vec2(2, 1))),
+        (LineOrder::Unspecified, Blocks::Tiles(Vec2(1, 1))),
+    ] {
+        let mut layer = part("a", &["Y"]);
+        layer.encoding = Encoding { compression: Compression::ZIP1, blocks, line_order };
+        let rows: Vec<f32> = opened(&plain(vec![layer])).unwrap().rgb.iter().map(|rgb| rgb[0]).collect();
+        assert_eq!(rows, [0.0, 1.0, 2.0, 3.0, 4.0, 5.0], "{line_order:?} {blocks:?}");
+    }
+}
+
+/// A head by hand: no library here writes files with several samples a pixel.
+#[test]
+fn deep_files_are_named() {
+    let attribute = |name: &str, kind: &str, value: &[u8]| {
+        [name.as_bytes(), b"\0", kind.as_bytes(), b"\0", &(value.len() as u32).to_le_bytes(), value].concat()
+    };
+    let channel = |name: &str| [name.as_bytes(), &[0, 1, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0]].concat();
+    let window: Vec<u8> = [0i32, 0, 0, 0].iter().flat_map(|n| n.to_le_bytes()).collect();
+    let bytes = [
+        // Version 2, with the flag of deep data.
+        &[0x76, 0x2f, 0x31, 0x01, 2, 0x08, 0, 0][..],
+        &attribute("channels", "chlist", &[channel("B"), channel("G"), channel("R"), vec![0]].concat()),
+        &attribute("chunkCount", "int", &1i32.to_le_bytes()),
+        &attribute("compression", "compression", &[0]),
+        &attribute("dataWindow", "box2i", &window),
+        &attribute("displayWindow", "box2i", &window),
+        &attribute("lineOrder", "lineOrder", &[0]),
+        &attribute("maxSamplesPerPixel", "int", &1i32.to_le_bytes()),
+        &attribute("name", "string", b"a"),
+        &attribute("pixelAspectRatio", "float", &1f32.to_le_bytes()),
+        &attribute("screenWindowCenter", "v2f", &[0; 8]),
+        &attribute("screenWindowWidth", "float", &1f32.to_le_bytes()),
+        &attribute("type", "string", b"deepscanline"),
+        &attribute("version", "int", &1i32.to_le_bytes()),
+        &[0; 64],
+    ]
+    .concat();
+    let error = opened(&bytes).unwrap_err();
+    assert!(error.contains("deep") && error.contains("--flatten"), "{error}");
 }

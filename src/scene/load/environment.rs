@@ -17,18 +17,35 @@ pub(super) fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Option<Env
         format!("it has {texels} texels, and an environment at most {MOST_TEXELS}: make a smaller image of it")
     };
     let image = ImageFile::open(path, MOST_TEXELS, too_many)?;
+    if image.cube {
+        return Err("it holds the six sides of a cube, and an environment is a latitude-longitude image: convert it, for example with \
+                    `exrenvmap -l IN out.exr`"
+            .into());
+    }
+    warnings.extend(image.warnings.iter().map(|warning| format!("{}: {warning}", path.display())));
+    let (width, height) = (image.width, image.height);
+    // One row or column has no shape that could be wrong.
+    if width.min(height) > 1 && width.abs_diff(2 * height) > width / 8 {
+        warnings.push(format!(
+            "{}: the environment has {width} x {height} texels, and a latitude-longitude image twice as many columns as rows: it is \
+             stretched; convert a cube, a cross or a picture of a mirror ball to latitude and longitude",
+            path.display()
+        ));
+    }
     let (mut odd, mut infinite) = (0u64, 0u64);
     let mut texels: Vec<Vec3> = (0..image.len())
         .map(|texel| {
             let [r, g, b, _] = image.linear(texel);
             let colour = Vec3::new(r, g, b);
-            odd += u64::from(colour.is_nan() || colour.min_element() < 0.0);
+            let rounding = image.rounding() * colour.abs().max_element();
+            odd += u64::from(colour.is_nan() || colour.min_element() < -rounding);
             // In this order a NaN becomes 0.
             colour.max(Vec3::ZERO).map(|channel| if channel.is_nan() { 0.0 } else { channel })
         })
         .collect();
     if odd > 0 {
-        warnings.push(format!("{}: {odd} texels are negative or NaN; 0 is used there", path.display()));
+        let why = if image.rounding() > 0.0 { " (colours that sRGB cannot show)" } else { "" };
+        warnings.push(format!("{}: {odd} texels are negative or NaN{why}; 0 is used there", path.display()));
     }
     let largest = texels.iter().flat_map(|t| t.to_array()).filter(|c| c.is_finite()).fold(0.0, f32::max);
     for texel in texels.iter_mut().filter(|texel| !texel.is_finite()) {

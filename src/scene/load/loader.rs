@@ -135,7 +135,7 @@ impl Loader {
                 self.warnings.push(format!("the material `{}` of the scene file is not used by anything", change.name));
             }
         }
-        self.warn_of_ignored(&shown);
+        self.warn_of_shared(&shown);
         let mut textures = Textures::default();
         let mut materials = Vec::new();
         for (draft, shown) in self.drafts.iter().zip(shown) {
@@ -167,22 +167,23 @@ impl Loader {
         shown
     }
 
-    /// One warning for all materials of a file that ask for the same.
-    fn warn_of_ignored(&mut self, shown: &[bool]) {
+    /// One warning for all materials of a file of which the same is to be said.
+    fn warn_of_shared(&mut self, shown: &[bool]) {
         let mut groups: Vec<(&(String, String), Vec<&str>)> = Vec::new();
         let mut group_of: HashMap<&(String, String), usize> = HashMap::new();
         for (draft, _) in self.drafts.iter().zip(shown).filter(|(_, shown)| **shown) {
-            let Some(ignored) = &draft.ignored else { continue };
-            let group = *group_of.entry(ignored).or_insert(groups.len());
-            if group == groups.len() {
-                groups.push((ignored, Vec::new()));
+            for said in &draft.shared {
+                let group = *group_of.entry(said).or_insert(groups.len());
+                if group == groups.len() {
+                    groups.push((said, Vec::new()));
+                }
+                groups[group].1.push(&draft.name);
             }
-            groups[group].1.push(&draft.name);
         }
         for ((file, what), names) in groups {
             let noun = if names.len() == 1 { "material" } else { "materials" };
             let names = listed(names.into_iter());
-            self.warnings.push(format!("{file}: {noun} {names}: not modelled, ignored: {what}"));
+            self.warnings.push(format!("{file}: {noun} {names}: {what}"));
         }
     }
 

@@ -1,6 +1,6 @@
 //! A material while it is still being read: what nobody has said yet is `None`.
 
-use super::texture::{MapFile, Textures};
+use super::texture::{Channel, MapFile, Textures};
 use crate::scene::{Maps, Material};
 use glam::Vec3;
 use std::ops::RangeInclusive;
@@ -46,8 +46,8 @@ pub(super) struct Draft {
     pub opacity: Option<f32>,
     /// The maps of all these.
     pub maps: DraftMaps,
-    /// The MTL file, and what it asks for and nothing models.
-    pub ignored: Option<(String, String)>,
+    /// Warnings that many materials of a file may share: the file, and what is said of them.
+    pub shared: Vec<(String, String)>,
     /// What had to be guessed: warnings, if the material is in use.
     pub notes: Vec<String>,
 }
@@ -190,7 +190,18 @@ impl Draft {
 
     /// Maps of numbers that are zero are not even looked for.
     fn load_maps(&self, material: &mut Material, textures: &mut Textures, warnings: &mut Vec<String>) {
-        let wanted = |colour: Vec3, map: &MapDraft| map.file().filter(|_| colour != Vec3::ZERO).cloned();
+        // The map whose alpha is the opacity, if one is.
+        let coverage = match &self.maps.opacity {
+            MapDraft::File(map) => Some(map).filter(|map| matches!(map.channel, Channel::Any | Channel::One(3))),
+            MapDraft::Removed => None,
+            // See below.
+            MapDraft::Unstated if material.transmission != Vec3::ZERO => None,
+            MapDraft::Unstated => self.maps.diffuse.file(),
+        };
+        let wanted = |colour: Vec3, map: &MapDraft| {
+            let map = map.file().filter(|_| colour != Vec3::ZERO)?;
+            Some(MapFile { straight: coverage.is_some_and(|coverage| coverage.is_same_file(map)), ..map.clone() })
+        };
         let mut visible = |colour: Vec3, map: &MapDraft, warnings: &mut Vec<String>| {
             wanted(colour, map).map(|map| textures.visible(&map, warnings))
         };

@@ -6,7 +6,9 @@ mod loader;
 mod material_draft;
 mod mtl;
 mod obj;
+mod other_formats;
 mod polygon;
+mod texel_faults;
 mod text_file;
 mod texture;
 mod toml;
@@ -29,8 +31,9 @@ pub fn load(path: &Path) -> Result<Scene> {
         "toml" => toml::load(path)?,
         "obj" => bare_mesh::load(path)?,
         _ => {
+            let what = other_formats::named(path).unwrap_or("not a scene".into());
             return Err(Error::Usage(format!(
-                "{}: not a scene; expected a scene file ending in .toml or a mesh ending in .obj",
+                "{}: {what}; expected a scene file ending in .toml or a mesh ending in .obj",
                 path.display()
             )));
         }

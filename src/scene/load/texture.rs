@@ -1,5 +1,6 @@
 //! Textures: which file a map means, what its options change, and the texels that both tracers see.
 
+use super::texel_faults::{self, luminance};
 use crate::picture::decode::{CHUNK, ImageFile};
 use crate::scene::Texture;
 use glam::Vec3;
@@ -29,6 +30,8 @@ pub(super) struct MapFile {
     pub gain: f32,
     /// `-imfchan`, for scalars.
     pub channel: Channel,
+    /// The image's alpha is the opacity: colours that are multiplied by it already are divided by it.
+    pub straight: bool,
 }
 
 /// Which channel of an image is a scalar.
@@ -44,7 +47,7 @@ pub(super) enum Channel {
 }
 
 /// What decides whether two maps are one texture.
-#[derive(Debug, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
 struct Key {
     file: PathBuf,
     clamp: bool,
@@ -52,6 +55,7 @@ struct Key {
     gain: u32,
     /// None: colours, with the image's own alpha.
     scalar: Option<Channel>,
+    straight: bool,
 }
 
 /// The textures loaded so far; one file with the same options is loaded once.
@@ -71,7 +75,23 @@ pub(super) struct Textures {
 impl MapFile {
     /// A map without options.
     pub(super) fn plain(names: Vec<String>, folder: &Path, at: String) -> Self {
-        MapFile { names, folder: folder.to_owned(), at, clamp: false, base: 0.0, gain: 1.0, channel: Channel::Any }
+        MapFile {
+            names,
+            folder: folder.to_owned(),
+            at,
+            clamp: false,
+            base: 0.0,
+            gain: 1.0,
+            channel: Channel::Any,
+            straight: false,
+        }
+    }
+
+    /// Whether two maps are in one file.
+    pub(super) fn is_same_file(&self, other: &MapFile) -> bool {
+        let file = |map: &MapFile| map.find().ok().and_then(|(path, _)| path.canonicalize().ok());
+        self.names == other.names && self.folder == other.folder
+            || file(self).is_some_and(|path| Some(path) == file(other))
     }
 
     /// The file, and a warning if it is not quite the one that is named.
@@ -178,7 +198,14 @@ impl Textures {
             warnings.push(guess);
         }
         let file = path.canonicalize().unwrap_or_else(|_| path.clone());
-        let key = Key { file, clamp: map.clamp, base: map.base.to_bits(), gain: map.gain.to_bits(), scalar };
+        let key = Key {
+            file,
+            clamp: map.clamp,
+            base: map.base.to_bits(),
+            gain: map.gain.to_bits(),
+            scalar,
+            straight: map.straight,
+        };
         if let Some(texture) = self.by_key.get(&key) {
             return *texture;
         }
@@ -191,6 +218,15 @@ impl Textures {
             Ok(image) => {
                 self.texels += image.len() as u64;
                 let texels = texels(&image, map, scalar);
+                for fault in image.warnings.iter().cloned().chain(texel_faults::of(&image, map, scalar)) {
+                    if self.said.insert(format!("{} {fault}", path.display())) {
+                        warnings.push(format!("{}: the texture {}: {fault}", map.at, path.display()));
+                    }
+                }
+                if !image.is_premultiplied() {
+                    // Then there is nothing to divide, and both are one.
+                    self.by_key.insert(Key { straight: !key.straight, ..key.clone() }, Some(self.loaded.len() as u32));
+                }
                 let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
                 let (width, height) = (image.width, image.height);
                 self.ranges.push(Range::of(&texels));
@@ -222,7 +258,7 @@ fn texels(image: &ImageFile, map: &MapFile, scalar: Option<Channel>) -> Vec<[f16
     };
     let range = |value: f32| map.base + map.gain * value;
     match scalar {
-        None => image.decode(|value| half(range(value)), opacity),
+        None => image.decode(map.straight, |value| half(range(value)), opacity),
         Some(channel) => {
             let scalar = |texel| {
                 let stored = image.stored(texel);
@@ -235,11 +271,6 @@ fn texels(image: &ImageFile, map: &MapFile, scalar: Option<Channel>) -> Vec<[f16
             (0..image.len()).into_par_iter().with_min_len(CHUNK).map(scalar).collect()
         }
     }
-}
-
-/// The luminance of linear sRGB primaries (ITU-R BT.709); the weights' sum is 1 even in single precision, so white is 1.
-fn luminance([r, g, b, _]: [f32; 4]) -> f32 {
-    (f64::from(r) * 0.2126 + f64::from(g) * 0.7152 + f64::from(b) * 0.0722) as f32
 }
 
 /// NaN and what is negative become 0.

@@ -102,6 +102,9 @@ pub fn run(options: &Options) -> Result<ExitCode> {
 fn settings(options: &Options, sections: &[Definition]) -> Result<Settings> {
     let effort = options.effort();
     let reference = options.reference.as_deref().map(picture::read).transpose()?;
+    if let (Some(path), Some(picture)) = (&options.reference, &reference) {
+        picture.warnings.iter().for_each(|warning| warn(format!("{}: {warning}", path.display())));
+    }
     if reference.is_some() && options.scenes.len() != 1 {
         return Err(Error::Usage(format!(
             "--reference is the picture of one scene, but there are {}: give exactly one SCENE",

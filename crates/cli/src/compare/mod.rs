@@ -75,6 +75,9 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     check_output(options, "--stats", options.stats.as_deref(), "json")?;
     let image = picture::read(&options.image)?;
     let reference = picture::read(&options.reference)?;
+    for (path, picture) in [(&options.image, &image), (&options.reference, &reference)] {
+        picture.warnings.iter().for_each(|warning| warn(format!("{}: {warning}", path.display())));
+    }
     let comparison = metrics::compare(&image, &reference, options.worst as usize)?;
     let flip = (comparison.pixels > 0).then(|| Flip::new(&image, &reference, options.exposure));
     let failures = failures(options, &comparison, flip.as_ref());

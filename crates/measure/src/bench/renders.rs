@@ -58,5 +58,5 @@ pub(super) fn render_samples(tracer: &mut dyn Tracer, scene: &Scene, spp: u32) -
 pub(super) fn picture(rendered: &Rendered) -> Picture {
     let film = &rendered.film;
     let rgb = (0..film.pixels()).map(|pixel| film.mean(pixel).map(|v| v as f32)).collect();
-    Picture { width: film.width, height: film.height, rgb, error: None, clamped: false }
+    Picture { width: film.width, height: film.height, rgb, error: None, clamped: false, warnings: vec![] }
 }

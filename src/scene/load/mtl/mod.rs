@@ -67,6 +67,8 @@ struct Current {
     refraction: Option<f32>,
     /// Keywords of features that nothing models.
     ignored: Vec<String>,
+    /// What exporters write for many materials alike.
+    shared: Vec<String>,
 }
 
 struct Reader<'a> {
@@ -126,12 +128,9 @@ impl Reader<'_> {
                     current.ignore("d -halo".into());
                     rest
                 });
-                current.dissolve = self.number(keyword, words, f32::NEG_INFINITY).or(current.dissolve);
+                current.dissolve = self.share(keyword, words).or(current.dissolve);
             }
-            "Tr" => current.transparency = self.number(keyword, &words, f32::NEG_INFINITY).or(current.transparency),
-            "Tf" if matches!(words.first(), Some(&("xyz" | "spectral"))) => {
-                self.warn(&format!("Tf {} is not modelled, only Tf with three numbers; ignored", words[0]));
-            }
+            "Tr" => current.transparency = self.share(keyword, &words).or(current.transparency),
             "Tf" => current.filter = self.colour(keyword, &words).or(current.filter),
             "Ni" => current.refraction = self.refraction(&words),
             "illum" => match words.first().and_then(|word| word.parse().ok()).filter(|model| *model <= 10) {
@@ -182,10 +181,10 @@ impl Reader<'_> {
         let at = format!("{}: material `{}`", self.path.display(), current.draft.name);
         current.impulses(&at);
         current.multipliers_of_maps(&at);
-        let Current { mut draft, ignored, .. } = current;
-        if !ignored.is_empty() {
-            draft.ignored = Some((self.path.display().to_string(), ignored.join(", ")));
-        }
+        let Current { mut draft, ignored, shared, .. } = current;
+        let ignored = (!ignored.is_empty()).then(|| format!("not modelled, ignored: {}", ignored.join(", ")));
+        let file = self.path.display().to_string();
+        draft.shared = shared.into_iter().chain(ignored).map(|said| (file.clone(), said)).collect();
         match self.by_name.entry(draft.name.clone()) {
             Entry::Vacant(place) => {
                 place.insert(self.drafts.len());
@@ -198,25 +197,50 @@ impl Reader<'_> {
         }
     }
 
-    /// One number for all channels, or three; none if it is wrong, which is a warning.
+    /// One number for all channels, or three; none if it is wrong, which is a warning. What follows three numbers does not count.
     fn colour(&mut self, keyword: &str, words: &[&str]) -> Option<Vec3> {
-        let numbers: Option<Vec<f32>> =
-            words.iter().map(|word| word.parse().ok().filter(|n: &f32| n.is_finite())).collect();
-        let colour = match numbers.as_deref() {
-            Some([grey]) => Vec3::splat(*grey),
-            Some([r, g, b]) => Vec3::new(*r, *g, *b),
+        if let Some(kind @ (&"xyz" | &"spectral")) = words.first() {
+            self.warn(&format!("{keyword} {kind} is not modelled, only {keyword} with three numbers; ignored"));
+            return None;
+        }
+        let number = |word: &&str| word.parse().ok().filter(|n: &f32| n.is_finite());
+        let numbers: Vec<f32> = words.iter().map_while(number).collect();
+        let colour = match numbers[..] {
+            [grey] if words.len() == 1 => Vec3::splat(grey),
+            [r, g, b, ..] => Vec3::new(r, g, b),
             _ => {
+                let found = words.join(" ");
+                let hint = if found.contains(',') { " (with a decimal point, and blanks between them)" } else { "" };
                 self.warn(&format!(
-                    "{keyword} needs three finite numbers, found `{}`; ignored",
-                    shortened(&words.join(" "))
+                    "{keyword} needs three finite numbers{hint}, found `{}`; ignored",
+                    shortened(&found)
                 ));
                 return None;
             }
         };
+        if let Some(rest) = words.get(3..).filter(|rest| !rest.is_empty()) {
+            self.warn(&format!("{keyword} has more than three numbers; `{}` is ignored", shortened(&rest.join(" "))));
+        }
         if colour.min_element() < 0.0 {
             self.warn(&format!("{keyword} is negative; 0 is used where it is"));
         }
+        // Only what emits may have any number.
+        if keyword != "Ke" && colour.max_element() > 1.001 {
+            self.warn(&format!(
+                "{keyword} {} is above 1, which is all light: numbers from 0 to 255 have to be divided by 255",
+                colour.max_element()
+            ));
+        }
         Some(colour.max(Vec3::ZERO))
+    }
+
+    /// `d` or `Tr`, a share of 1; `Tr` of more is what [`Current::opacity`] speaks of.
+    fn share(&mut self, keyword: &str, words: &[&str]) -> Option<f32> {
+        let share = self.number(keyword, words, f32::NEG_INFINITY)?;
+        if share < 0.0 || share > 1.0 && keyword == "d" {
+            self.warn(&format!("{keyword} {share} is outside of 0 to 1; it is clamped"));
+        }
+        Some(share)
     }
 
     /// `Ns`; what is larger than any that is modelled becomes the largest one.
@@ -248,6 +272,11 @@ impl Reader<'_> {
                 "{keyword} needs a finite number{least}, found `{}`; ignored",
                 shortened(&words.join(" "))
             ));
+        } else if words.len() > 1 {
+            self.warn(&format!(
+                "{keyword} has more than one number; `{}` is ignored",
+                shortened(&words[1..].join(" "))
+            ));
         }
         number
     }
@@ -262,6 +291,7 @@ impl Current {
 
     /// What `illum` makes of `Ks`, `Ns`, `Ni`, `Tf`, `d` and `Tr`.
     fn impulses(&mut self, at: &str) {
+        let glass = self.illum.filter(|model| matches!(model, 4 | 6 | 7 | 9)).is_some_and(|model| self.is_glass(model));
         let draft = &mut self.draft;
         let black = |colour: Option<Vec3>| colour.is_none_or(|colour| colour == Vec3::ZERO);
         match self.illum {
@@ -273,7 +303,7 @@ impl Current {
                 draft.eta = self.refraction.filter(|ni| model == 5 && *ni > 1.0);
                 self.unused_map(|draft| &mut draft.maps.glossy, "map_Ks of a mirror");
             }
-            Some(4 | 6 | 7 | 9) => {
+            Some(4 | 6 | 7 | 9) if glass => {
                 draft.reflection = Some(if black(draft.glossy) { Vec3::ONE } else { draft.glossy.unwrap_or_default() });
                 draft.transmission = Some(if black(self.filter) { Vec3::ONE } else { self.filter.unwrap_or_default() });
                 draft.glossy = None;
@@ -293,11 +323,63 @@ impl Current {
         if matches!(self.illum, Some(0 | 1)) {
             self.draft.maps.glossy = MapDraft::Unstated;
         }
-        // `d` and `Tr` say the same in opposite ways, and exporters disagree on `Tr`: `d` wins where both are given.
+        self.opacity(at);
+    }
+
+    /// Whether `illum`, which is one of those of glass, makes glass. Many exporters write one of them for everything, so that a material with a
+    /// colour is glass only if it has an index of refraction, too, and nothing says how much of it is there.
+    fn is_glass(&mut self, illum: u32) -> bool {
+        let draft = &self.draft;
+        let coloured = draft.maps.diffuse.file().is_some() || draft.diffuse.is_some_and(|kd| kd != Vec3::ZERO);
+        if !coloured {
+            return true;
+        }
+        let transparency = self.transparency.filter(|tr| *tr < 1.0).map_or(1.0, |tr| 1.0 - tr);
+        let dissolves = self.dissolve.unwrap_or(transparency) < 1.0 || draft.maps.opacity.file().is_some();
+        let refraction = self.refraction.filter(|ni| (ni - 1.0).abs() > 1e-3);
+        let (glass, said) = match refraction {
+            _ if dissolves => (
+                false,
+                "but with a colour (Kd): d, Tr or map_d is taken as the opacity, and nothing is refracted; `Kd 0 0 0` makes it glass".into(),
+            ),
+            _ if self.filter == Some(Vec3::ZERO) => (
+                false,
+                "but with a colour (Kd) and a Tf of 0, through which nothing goes: it is taken as opaque".to_owned(),
+            ),
+            None => (
+                false,
+                "but with a colour (Kd), without transparency (d) and without an index of refraction (Ni): it is taken as opaque; \
+                 `Kd 0 0 0` makes it glass"
+                    .into(),
+            ),
+            Some(ni) => (
+                true,
+                format!(
+                    "with Ni {ni} and a colour (Kd): glass and diffuse share the light; without Ni, or with illum 2, it is opaque, and with \
+                     `Kd 0 0 0` clear glass"
+                ),
+            ),
+        };
+        self.shared.push(format!("illum {illum} asks for glass, {said}"));
+        glass
+    }
+
+    /// `d`, or 1 - `Tr`. They say the same in opposite ways, and exporters disagree on `Tr`: `d` wins where both are given, and what would be
+    /// invisible by `Tr` alone is not meant to be.
+    fn opacity(&mut self, at: &str) {
         if let (Some(d), Some(tr)) = (self.dissolve, self.transparency)
             && (d + tr - 1.0).abs() > 1e-3
         {
             self.draft.notes.push(format!("{at}: d {d} and Tr {tr} contradict each other; d counts"));
+        }
+        if let (None, Some(tr)) = (self.dissolve, self.transparency)
+            && tr >= 1.0
+        {
+            self.shared.push(format!(
+                "Tr {tr} alone would make it invisible (Tr is 1 - d), but programs that write this mean opaque, as which it is taken: write `d 1` \
+                 in its place, or `d 0` if nothing is to be seen"
+            ));
+            self.transparency = None;
         }
         let opacity = self.dissolve.or(self.transparency.map(|tr| 1.0 - tr));
         self.draft.opacity = opacity.map(|d| d.clamp(0.0, 1.0));

@@ -6,6 +6,7 @@ use super::values::Triple;
 use crate::scene::load::loader::Loader;
 use crate::scene::load::material_draft::{Draft, DraftMaps, MapDraft};
 use crate::scene::load::obj;
+use crate::scene::load::other_formats;
 use crate::scene::load::text_file::{line_and_column, shortened};
 use crate::scene::load::texture::MapFile;
 use crate::scene::{Luminaire, Object};
@@ -87,7 +88,8 @@ impl File<'_> {
         let object_to_world = self.transform(table)?;
         let mesh_path = self.beside(object.mesh.get_ref());
         if !mesh_path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("obj")) {
-            let message = format!("`{}`: a mesh has to be an .obj file", object.mesh.get_ref());
+            let what = other_formats::named(&mesh_path).map(|what| format!(" ({what})")).unwrap_or_default();
+            let message = format!("`{}`: a mesh has to be an .obj file{what}", object.mesh.get_ref());
             return Err(self.error(object.mesh.span(), message));
         }
         let mesh = loader.mesh(&mesh_path, object.smooth.map(|smooth| smooth.0)).map_err(|error| match error {
