@@ -6,6 +6,7 @@ use crate::shared::exit_codes::{DEVICE_FAILED, INTERRUPTED};
 use crate::shared::interrupts;
 use crate::shared::printing::{self, Notes, print};
 use luminaire::Result;
+use luminaire::reference::path::LONGEST_PATH;
 use luminaire::render::{End, Rendered};
 use luminaire::scene::Scene;
 use std::path::PathBuf;
@@ -75,7 +76,10 @@ fn warn_of_losses(rendered: &Rendered, scene: &Scene, notes: Notes) {
             format!("; with the same options, --pixel {x},{y} --sample {} replays one", first.sample)
         },
     );
-    notes.warn(format_args!("{} samples that were not finite, or lost, are left out{replay}", rendered.dropped));
+    notes.warn(format_args!(
+        "{} samples are left out: not finite, or lost (light that nothing absorbs: a path ends after {LONGEST_PATH} bounces){replay}",
+        rendered.dropped
+    ));
 }
 
 /// Warns of pixels without a sample in the pictures that are written.
