@@ -22,6 +22,9 @@ vec3 refract_direction(vec3 wo, vec3 n, float eta) {
     return normalize((cos_i / eta - sqrt(cosine2)) * n - wo / eta);
 }
 
+// Reflectance of a sheet between two parallel surfaces of this reflectance, with all that goes to and fro between them.
+float thin_reflectance(float fresnel) { return 2.0 * fresnel / (1.0 + fresnel); }
+
 vec3 reflect_direction(vec3 wo, vec3 n) { return 2.0 * dot(wo, n) * n - wo; }
 
 // What the impulses at a surfel do with light from one side.
@@ -41,15 +44,19 @@ Impulses impulses(Surfel s, Material material, vec3 wo) {
     vec3 rest = material.lambert;
     if (GLOSSY) rest += material.glossy;
     i.reflected = material.reflection;
-    if (DIELECTRICS && material.eta != MIRROR) i.eta = s.front ? material.eta : 1.0 / material.eta;
-    // A direction on the wrong side of the triangle: the triangle's own normal instead.
+    bool thin = THIN && material.thin != 0u;
+    // A sheet lets light through as if it were not there.
+    if (DIELECTRICS && material.eta != MIRROR) i.eta = thin ? 1.0 : s.front ? material.eta : 1.0 / material.eta;
+    // A direction on the wrong side of the triangle, or all reflected: the triangle's own normal instead. Total reflection about interpolated
+    // normals would keep paths for ever (src/reference/impulse.rs).
     if (VERTEX_NORMALS) {
         bool wrong = dot(reflect_direction(wo, i.normal), s.geometric_normal) <= 0.0;
-        if (DIELECTRICS && i.eta > 0.0) wrong = wrong || dot(refract_direction(wo, i.normal, i.eta), s.geometric_normal) > 0.0;
+        if (DIELECTRICS && i.eta > 0.0) wrong = wrong || dot(refract_direction(wo, i.normal, i.eta), s.geometric_normal) >= 0.0;
         if (wrong) i.normal = s.geometric_normal;
     }
     if (DIELECTRICS && i.eta > 0.0) {
-        float f = fresnel(i.eta, min(dot(wo, i.normal), 1.0));
+        float f = fresnel(thin ? material.eta : i.eta, min(dot(wo, i.normal), 1.0));
+        if (thin) f = thin_reflectance(f);
         i.reflected *= f;
         i.transmitted = material.transmission * (1.0 - f);
     }

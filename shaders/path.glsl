@@ -18,6 +18,9 @@ Path camera_path(uvec2 pixel, uint pixel_index, uint sample_index) {
     return Path(origin, origin, direction, vec3(1.0), vec3(0.0), 0u, IMPULSE, 1.0, vec3(1.0));
 }
 
+// A path that would be longer is lost (src/reference/path.rs).
+const uint LONGEST_PATH = 32768u;
+
 bool is_finite(vec3 v) {
     // By the bits: a compiler may assume that no float is infinite.
     uvec3 exponent = floatBitsToUint(v) & INFINITY_BITS;
@@ -25,7 +28,7 @@ bool is_finite(vec3 v) {
 }
 
 // Traces the path's ray and whatever happens at the surface it meets: once through the loop of `radiance` in the reference.
-// Returns false when the path has ended. Its radiance is not finite if its numbers were not.
+// Returns false when the path has ended. Its radiance is not finite if its numbers were not, or if it is lost.
 bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uvec2 rays) {
     Hit hit;
     rays.x++;
@@ -98,7 +101,7 @@ bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uve
     if (EXTINCTION == EXTINCTION_THROUGHPUT) {
         if (DIELECTRICS) path.eta_scale *= next.eta2;
         float left = largest(path.throughput) * (DIELECTRICS ? path.eta_scale : 1.0);
-        float alive = min(left / SURE_THROUGHPUT, MAX_SURVIVAL);
+        float alive = min(left / SURE_THROUGHPUT, 1.0);
         if (!(uniform1(random.w) < alive)) return false;
         reweighted = alive;
         path.throughput /= alive;
@@ -108,5 +111,10 @@ bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uve
     path.direction = next.wi;
     path.pdf = next.pdf == IMPULSE ? IMPULSE : next.pdf * reweighted;
     path.bounce++;
+    // Light that nothing absorbs: lost, and it has to be counted.
+    if (path.bounce == LONGEST_PATH) {
+        path.radiance = vec3(uintBitsToFloat(0x7fc00000u));
+        return false;
+    }
     return true;
 }

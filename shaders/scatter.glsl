@@ -1,7 +1,5 @@
 // Which way a path goes on from a surface, and whether it does: impulses, the BSDF, extinction.
 
-// No surface lets every path live, so that every path ends.
-const float MAX_SURVIVAL = 0.9999;
 // Russian roulette leaves paths of at least this throughput alone (src/reference/scatter.rs).
 const float SURE_THROUGHPUT = 0.4;
 
@@ -10,7 +8,7 @@ float survival(Material material) {
     vec3 albedo = material.lambert;
     if (GLOSSY) albedo += material.glossy;
     if (IMPULSES) albedo += max(material.reflection, DIELECTRICS ? material.transmission : vec3(0.0));
-    return min(largest(albedo), MAX_SURVIVAL);
+    return min(largest(albedo), 1.0);
 }
 
 // The density with which a path goes on to a direction that it chooses with the density `pdf`: extinction has to let it live. What the
@@ -18,7 +16,7 @@ float survival(Material material) {
 // throughput so far, without eta^2, times f cos.
 float path_pdf(float pdf, vec3 scattered, Material material) {
     if (EXTINCTION == EXTINCTION_SURFACE) return pdf * survival(material);
-    if (EXTINCTION == EXTINCTION_THROUGHPUT) return min(largest(scattered) / SURE_THROUGHPUT, MAX_SURVIVAL * pdf);
+    if (EXTINCTION == EXTINCTION_THROUGHPUT) return min(largest(scattered) / SURE_THROUGHPUT, pdf);
     return pdf;
 }
 

@@ -12,16 +12,17 @@ layout(constant_id = 7) const bool IMPULSES = true;            // some material 
 layout(constant_id = 8) const bool DIELECTRICS = true;         // some material has an index of refraction
 layout(constant_id = 9) const bool TEXTURES = true;            // some material has a map
 layout(constant_id = 10) const bool HOLES = true;              // some material is not opaque everywhere
-layout(constant_id = 11) const bool ORTHOGRAPHIC = false;
-layout(constant_id = 12) const bool SOBOL = false;
+layout(constant_id = 11) const bool THIN = true;                // some material is a sheet whose two sides are one surface
+layout(constant_id = 12) const bool ORTHOGRAPHIC = false;
+layout(constant_id = 13) const bool SOBOL = false;
 
 // The integrator's choices (src/scene/estimator.rs).
-layout(constant_id = 13) const bool SIMPLE = false;            // the simple ray tracer instead of the path tracer
-layout(constant_id = 14) const uint LIGHT_SAMPLING = 2u;
-layout(constant_id = 15) const bool SOLID_ANGLE = true;        // near triangles are sampled by solid angle
-layout(constant_id = 16) const uint DIRECTIONS = 2u;
-layout(constant_id = 17) const uint EXTINCTION = 3u;
-layout(constant_id = 18) const bool THRESHOLD = false;         // paths of small albedo end
+layout(constant_id = 14) const bool SIMPLE = false;            // the simple ray tracer instead of the path tracer
+layout(constant_id = 15) const uint LIGHT_SAMPLING = 2u;
+layout(constant_id = 16) const bool SOLID_ANGLE = true;        // near triangles are sampled by solid angle
+layout(constant_id = 17) const uint DIRECTIONS = 2u;
+layout(constant_id = 18) const uint EXTINCTION = 3u;
+layout(constant_id = 19) const bool THRESHOLD = false;         // paths of small albedo end
 
 const uint LIGHT_NONE = 0u;
 const uint LIGHT_DIRECT = 1u;
@@ -90,6 +91,7 @@ struct Material {
     uint emission_map;
     uint opacity_map;             // its alpha multiplies the opacity
     uint one_sided;               // 1 if only the outward side emits
+    uint thin;                    // 1 if it is a sheet whose two sides are one surface
 };
 // What impulse_probability is where the albedos say how probable an impulse is.
 const float BY_ALBEDOS = -1.0;
@@ -199,7 +201,7 @@ Material load_material(uint index) {
     uvec4 maps = texelFetch(materials, base + 6);
     uvec4 last = texelFetch(materials, base + 7);
     return Material(ambient.rgb, ambient.w, lambert.rgb, lambert.w, glossy.rgb, glossy.w, emission.rgb, emission.w,
-                    reflection.rgb, reflection.w, transmission.rgb, transmission.w, maps.x, maps.y, maps.z, maps.w, last.x, last.y);
+                    reflection.rgb, reflection.w, transmission.rgb, transmission.w, maps.x, maps.y, maps.z, maps.w, last.x, last.y, last.z);
 }
 
 Luminaire load_luminaire(uint index) {

@@ -62,7 +62,12 @@ Surfel surfel(Hit hit, vec3 wo) {
         vec3 nb = uintBitsToFloat(texelFetch(normals, base + 1).xyz);
         vec3 nc = uintBitsToFloat(texelFetch(normals, base + 2).xyz);
         // A corner without a normal makes the triangle flat.
-        if (na != vec3(0.0) && nb != vec3(0.0) && nc != vec3(0.0)) n = (1.0 - w.x - w.y) * na + w.x * nb + w.y * nc;
+        if (na != vec3(0.0) && nb != vec3(0.0) && nc != vec3(0.0)) {
+            n = (1.0 - w.x - w.y) * na + w.x * nb + w.y * nc;
+            // Outward is where the winding is counter-clockwise, unless the vertex normals know better: for the whole triangle, so that light
+            // is inside behind all of it or behind none.
+            if (dot(na + nb + nc, s.geometric_normal) < 0.0) s.geometric_normal = -s.geometric_normal;
+        }
     }
 
     if (INSTANCES) {
@@ -92,8 +97,6 @@ Surfel surfel(Hit hit, vec3 wo) {
 
     // Divided first, so that the squares of a small triangle's normal do not vanish.
     s.geometric_normal = normalize(s.geometric_normal / largest(abs(s.geometric_normal)));
-    // Outward is where the winding is counter-clockwise, unless the vertex normals know better.
-    if (VERTEX_NORMALS && dot(n, s.geometric_normal) < 0.0) s.geometric_normal = -s.geometric_normal;
     s.front = dot(s.geometric_normal, wo) >= 0.0;
     if (!s.front) s.geometric_normal = -s.geometric_normal;
     s.shading_normal = s.geometric_normal;

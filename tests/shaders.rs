@@ -255,7 +255,7 @@ fn twins() -> Vec<(&'static str, f64)> {
     use luminaire::gpu::pack::luminaire as bounds;
     use luminaire::gpu::probe::Function;
     use luminaire::gpu::specialization::{directions_number, extinction_number, light_sampling_number};
-    use luminaire::reference::{luminaire as light, scatter};
+    use luminaire::reference::{luminaire as light, path, scatter};
     use luminaire::sampling::{PARTS, SENSOR_BLOCK};
     use luminaire::scene::{Directions, Extinction, Filter, LightSampling};
     use std::f64::consts::{FRAC_PI_4, PI};
@@ -284,7 +284,7 @@ fn twins() -> Vec<(&'static str, f64)> {
         ("MOST_RADIANCE", MOST_RADIANCE),
         ("PARTS", PARTS.into()),
         ("SENSOR_BLOCK", SENSOR_BLOCK.into()),
-        ("MAX_SURVIVAL", scatter::MAX_SURVIVAL),
+        ("LONGEST_PATH", f64::from(path::LONGEST_PATH)),
         ("SURE_THROUGHPUT", scatter::SURE_THROUGHPUT),
         ("NEAR", light::NEAR),
         ("LEAST_SOLID_ANGLE", light::LEAST_SOLID_ANGLE),

@@ -192,8 +192,10 @@ shared! {
         opacity_map: u32,
         /// 1 if only the outward side emits.
         one_sided: u32,
+        /// 1 if it is a sheet whose two sides are one surface.
+        thin: u32,
         /// To a multiple of 16 bytes.
-        padding: [u32; 2],
+        padding: u32,
     }
 }
 

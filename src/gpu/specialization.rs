@@ -58,6 +58,8 @@ features! {
     textures: "textures",
     /// Some material is not opaque everywhere.
     holes: "holes",
+    /// Some material is a sheet whose two sides are one surface.
+    thin: "thin sheets",
 }
 
 /// The kernel that runs: the scene's features, and the choices of its integrator.
@@ -98,6 +100,7 @@ impl KernelModel {
                 [m.maps.ambient, m.maps.lambert, m.maps.glossy, m.maps.emission].iter().any(Option::is_some)
             }),
             holes: material(Material::has_holes),
+            thin: material(|m| m.thin && m.transmission != Vec3::ZERO),
         };
         KernelModel {
             features,

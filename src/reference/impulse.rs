@@ -35,6 +35,12 @@ pub fn fresnel(eta: f64, cos_i: f64) -> f64 {
     0.5 * (perpendicular * perpendicular + parallel * parallel)
 }
 
+/// Reflectance of a sheet between two parallel surfaces of this reflectance, with all that goes to and fro between them:
+/// `F + (1 - F)^2 F (1 + F^2 + ...)`.
+pub fn thin_reflectance(fresnel: f64) -> f64 {
+    2.0 * fresnel / (1.0 + fresnel)
+}
+
 /// The impulses of a surfel, as seen from one direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Impulses {
@@ -52,12 +58,17 @@ pub struct Impulses {
 
 impl Surfel {
     /// The impulses towards `wo`. They are about the shading normal, unless one of the two directions would then be on the wrong side
-    /// of the triangle: in that case both directions, and the reflectance, are about the geometric normal. Reflectance and
-    /// transmittance so always add up to 1.
+    /// of the triangle, or a dielectric would reflect all: in that case both directions, and the reflectance, are about the geometric
+    /// normal. Reflectance and transmittance so always add up to 1.
+    ///
+    /// Total reflection about interpolated normals would be a trap: such reflections do not preserve the volume of phase space, and paths that
+    /// entered a coarse ball of glass would be drawn to its rim and stay there for ever. About the triangles' own normals they leave.
     pub fn impulses(&self, wo: DVec3) -> Impulses {
         let about_shading_normal = self.impulses_about(self.shading_normal, wo);
         let Impulses { reflected, transmitted, .. } = about_shading_normal;
-        if self.geometric_normal.dot(reflected) > 0.0 && self.geometric_normal.dot(transmitted) <= 0.0 {
+        // Nothing transmitted is the zero vector.
+        let passes = self.eta.is_none() || self.geometric_normal.dot(transmitted) < 0.0;
+        if self.geometric_normal.dot(reflected) > 0.0 && passes {
             about_shading_normal
         } else {
             self.impulses_about(self.geometric_normal, wo)
@@ -70,6 +81,11 @@ impl Surfel {
             let (transmission, transmitted) = (DVec3::ZERO, DVec3::ZERO);
             return Impulses { reflection: self.reflection, reflected, transmission, transmitted, eta: 1.0 };
         };
+        if self.thin {
+            let (reflectance, transmitted) = (thin_reflectance(fresnel(index, normal.dot(wo))), -wo);
+            let (reflection, transmission) = (self.reflection * reflectance, self.transmission * (1.0 - reflectance));
+            return Impulses { reflection, reflected, transmission, transmitted, eta: 1.0 };
+        }
         let eta = if self.front { index } else { 1.0 / index };
         let fresnel = fresnel(eta, normal.dot(wo));
         Impulses {

@@ -9,18 +9,15 @@ use super::surfel::{Surfel, mean};
 use crate::scene::{Directions, Estimator, Extinction};
 use glam::DVec3;
 
-/// No surface lets every path live, so that every path ends.
-pub const MAX_SURVIVAL: f64 = 0.9999;
-
-/// Russian roulette lets a path live with its throughput over this as the probability: surely (but for [`MAX_SURVIVAL`]) as long as it is
-/// larger. With 1 paths would end so early that their variance costs more than their rays save; `docs/performance.md` has the measurement.
+/// Russian roulette lets a path live with its throughput over this as the probability: surely as long as it is larger. With 1 paths would end so early that their variance costs more than their rays save; `docs/performance.md` has the measurement.
 pub const SURE_THROUGHPUT: f64 = 0.4;
 
 /// The probability that a path goes on: one minus the extinction coefficient (slide "Extinction Coefficient"), for the channel
-/// that loses least. Fresnel aside, so that it is the same for all directions.
+/// that loses least. Fresnel aside, so that it is the same for all directions. Never above 1: nothing makes a path heavier than the light it
+/// stands for.
 pub fn survival(surfel: &Surfel) -> f64 {
     let impulse = surfel.reflection.max(surfel.transmission);
-    (surfel.lambert + surfel.glossy + impulse).max_element().min(MAX_SURVIVAL)
+    (surfel.lambert + surfel.glossy + impulse).max_element().min(1.0)
 }
 
 /// How a path goes on.
@@ -75,7 +72,7 @@ pub fn path_pdf(surfel: &Surfel, wo: DVec3, wi: DVec3, throughput: DVec3, estima
         Extinction::Throughput => {
             // The throughput behind the surface is this over `pdf`.
             let scattered = throughput * surfel.bsdf(wo, wi) * surfel.shading_normal.dot(wi);
-            (scattered.max_element() / SURE_THROUGHPUT).min(MAX_SURVIVAL * pdf)
+            (scattered.max_element() / SURE_THROUGHPUT).min(pdf)
         }
     }
 }

@@ -3,6 +3,7 @@
 use super::hit::{Hit, interpolate, texture_coordinates};
 use super::prepared_scene::Reference;
 use super::rounding::gamma;
+use crate::scene::outward;
 use glam::{DVec2, DVec3, Vec3};
 
 /// A surface element, seen from the direction `wo` (slide "Surface Element Class"); textures are already in its numbers.
@@ -38,6 +39,8 @@ pub struct Surfel {
     pub transmission: DVec3,
     /// Index of refraction inside over that outside; none: a mirror without Fresnel.
     pub eta: Option<f64>,
+    /// Whether it is both sides of a sheet at once.
+    pub thin: bool,
     /// Probability of going on by an impulse, if the material states one.
     pub impulse_probability: Option<f64>,
 }
@@ -57,20 +60,14 @@ impl Reference {
         let mesh = &self.scene.meshes[object.mesh as usize];
         let triangle = &mesh.triangles[hit.triangle as usize];
         let normal_to_world = self.instances[hit.object as usize].normal_to_world;
-        // Counter-clockwise in object space is outside, and stays outside in an instance that mirrors.
-        let [a, b, c] = triangle.vertices.map(|v| mesh.positions[v as usize].as_dvec3());
-        let mut front = (normal_to_world * (b - a).cross(c - a)).dot(geometric_normal) >= 0.0;
+        // What is outside in object space stays outside in an instance that mirrors.
+        let front = (normal_to_world * outward(mesh, triangle)).dot(geometric_normal) >= 0.0;
         let mut shading_normal = geometric_normal;
         if !mesh.normals.is_empty() {
             let normals = triangle.vertices.map(|v| mesh.normals[v as usize]);
             if normals.iter().all(|n| *n != Vec3::ZERO) {
-                let outward = normal_to_world * interpolate(weights, normals.map(|n| n.as_dvec3()));
-                // Vertex normals know better than the winding which side is outside.
-                let side = outward.dot(geometric_normal);
-                if side != 0.0 {
-                    front = side > 0.0;
-                }
-                let n = facing(outward.normalize_or_zero(), geometric_normal);
+                let interpolated = normal_to_world * interpolate(weights, normals.map(|n| n.as_dvec3()));
+                let n = facing(interpolated.normalize_or_zero(), geometric_normal);
                 if n.dot(wo) > 0.0 {
                     shading_normal = n;
                 }
@@ -99,6 +96,7 @@ impl Reference {
             reflection: material.reflection.as_dvec3(),
             transmission: if material.eta.is_some() { material.transmission.as_dvec3() } else { DVec3::ZERO },
             eta: material.eta.map(f64::from),
+            thin: material.thin,
             impulse_probability: material.impulse_probability.map(f64::from),
         }
     }

@@ -3,7 +3,7 @@
 use super::environment::EnvironmentDistribution;
 use super::luminaire::Luminaire;
 use super::material::Material;
-use super::mesh::{Mesh, Triangle, widen};
+use super::mesh::{outward, widen};
 use super::world::Scene;
 use crate::sampling::AliasTable;
 use glam::{DVec3, Vec3};
@@ -107,15 +107,6 @@ impl LuminaireTable {
         // The last entry.
         if self.environment.is_some() { self.choice.pdf.last().copied().unwrap_or(0.0) } else { 0.0 }
     }
-}
-
-/// A vector along the outward normal, in object space: where the winding is counter-clockwise, unless the vertex normals know better.
-fn outward(mesh: &Mesh, triangle: &Triangle) -> DVec3 {
-    let [a, b, c] = triangle.vertices.map(|v| mesh.positions[v as usize].as_dvec3());
-    let winding = (b - a).cross(c - a);
-    let normals = triangle.vertices.map(|v| mesh.normals.get(v as usize).map_or(DVec3::ZERO, |n| n.as_dvec3()));
-    let known = normals.iter().all(|n| *n != DVec3::ZERO);
-    if known && normals.iter().sum::<DVec3>().dot(winding) < 0.0 { -winding } else { winding }
 }
 
 /// Power that a surface of this material emits for each unit of area, averaged over the channels and over its texture.

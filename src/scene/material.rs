@@ -31,6 +31,9 @@ pub struct Material {
     /// Index of refraction of what lies behind the outward normal over that in front of it (`Ni`), 0.01 to 100; none: no
     /// Fresnel, no transmission.
     pub eta: Option<f32>,
+    /// Whether the surface is a sheet, such as a window pane, whose two sides are one: it reflects `2 F / (1 + F)`, with `F` Fresnel's
+    /// reflectance of either side, and lets the rest through without bending it. Which side is outward makes no difference.
+    pub thin: bool,
     /// Probability with which a path takes an impulse where there is something else too, in (0, 1); none: the impulses' share of the
     /// albedo at that angle. It changes the noise, never the mean.
     pub impulse_probability: Option<f32>,
@@ -69,6 +72,7 @@ impl Default for Material {
             reflection: Vec3::ZERO,
             transmission: Vec3::ZERO,
             eta: None,
+            thin: false,
             impulse_probability: None,
             opacity: 1.0,
             maps: Maps::default(),
@@ -80,6 +84,11 @@ impl Material {
     /// Whether anything is mirrored or refracted.
     pub fn has_impulse(&self) -> bool {
         self.reflection != Vec3::ZERO || (self.transmission != Vec3::ZERO && self.eta.is_some())
+    }
+
+    /// Whether light that passes is bent, so that the surface has to be that of a closed body.
+    pub fn bends(&self) -> bool {
+        self.transmission != Vec3::ZERO && self.eta.is_some_and(|eta| eta != 1.0) && !self.thin
     }
 
     /// Whether a ray may pass the surface as if it were not there.

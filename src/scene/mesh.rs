@@ -1,6 +1,6 @@
 //! `Mesh`, `Triangle`, and `Object`, which is where a mesh stands.
 
-use glam::{Affine3A, DAffine3, DMat3, Vec2, Vec3};
+use glam::{Affine3A, DAffine3, DMat3, DVec3, Vec2, Vec3};
 
 /// Triangles in object space.
 #[derive(Debug, Clone, Default)]
@@ -45,6 +45,16 @@ pub struct Object {
     pub object_to_world: Affine3A,
     /// Replaces the material of every triangle, if given.
     pub material: Option<u32>,
+}
+
+/// A vector along the outward normal, in object space: where the winding is counter-clockwise, unless the vertex normals know better.
+/// One answer for a whole triangle, so that light is inside behind all of it or behind none.
+pub(crate) fn outward(mesh: &Mesh, triangle: &Triangle) -> DVec3 {
+    let [a, b, c] = triangle.vertices.map(|v| mesh.positions[v as usize].as_dvec3());
+    let winding = (b - a).cross(c - a);
+    let normals = triangle.vertices.map(|v| mesh.normals.get(v as usize).map_or(DVec3::ZERO, |n| n.as_dvec3()));
+    let known = normals.iter().all(|n| *n != DVec3::ZERO);
+    if known && normals.iter().sum::<DVec3>().dot(winding) < 0.0 { -winding } else { winding }
 }
 
 /// An affine map in `f64`, from the `f32` numbers that both tracers share.

@@ -29,7 +29,7 @@ pub use load::load;
 pub use luminaire::Luminaire;
 pub use luminaire_table::{EmissiveTriangle, LuminaireTable, SampledLuminaire};
 pub use material::{Maps, Material};
-pub(crate) use mesh::widen;
+pub(crate) use mesh::{outward, widen};
 pub use mesh::{Mesh, Object, Triangle};
 pub use sensor::{Lens, Projection, Sensor};
 pub use settings::{FilmSettings, RenderSettings};

@@ -57,6 +57,7 @@ pub fn flat_surfel(lambert: DVec3, glossy: DVec3, exponent: f64) -> Surfel {
         reflection: DVec3::ZERO,
         transmission: DVec3::ZERO,
         eta: None,
+        thin: false,
         impulse_probability: None,
     }
 }

@@ -33,6 +33,7 @@ pub(in crate::gpu) fn material(scene: &Scene, table: &LuminaireTable, index: usi
         emission_map: map(maps.emission),
         opacity_map: map(maps.opacity),
         one_sided: u32::from(material.one_sided),
-        padding: [0; 2],
+        thin: u32::from(material.thin && transmission != Vec3::ZERO),
+        padding: 0,
     }
 }

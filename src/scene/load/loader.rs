@@ -245,7 +245,7 @@ impl Loader {
 }
 
 /// A list of names in a warning, not too long.
-fn listed<'a>(names: impl ExactSizeIterator<Item = &'a str>) -> String {
+pub(super) fn listed<'a>(names: impl ExactSizeIterator<Item = &'a str>) -> String {
     const MOST: usize = 8;
     let more = names.len().saturating_sub(MOST);
     let text = names.take(MOST).map(|name| format!("`{}`", shortened(name))).collect::<Vec<_>>().join(", ");

@@ -40,6 +40,8 @@ pub(super) struct Draft {
     pub transmission: Option<Vec3>,
     /// Index of refraction, one of [`ETAS`].
     pub eta: Option<f32>,
+    /// Whether it is a sheet whose two sides are one surface.
+    pub thin: Option<bool>,
     /// Probability of taking an impulse.
     pub impulse_probability: Option<f32>,
     /// `d`.
@@ -109,6 +111,7 @@ impl Draft {
         self.reflection = other.reflection.or(self.reflection);
         self.transmission = other.transmission.or(self.transmission);
         self.eta = other.eta.or(self.eta);
+        self.thin = other.thin.or(self.thin);
         self.impulse_probability = other.impulse_probability.or(self.impulse_probability);
         self.opacity = other.opacity.or(self.opacity);
         self.maps.ambient.overlay(&other.maps.ambient);
@@ -143,6 +146,7 @@ impl Draft {
         let impulses = reflection != Vec3::ZERO || transmission != Vec3::ZERO;
         let without = [
             ("eta", self.eta.is_some() && !impulses, "`reflection` or `transmission`"),
+            ("thin", self.thin == Some(true) && transmission == Vec3::ZERO, "`transmission`"),
             ("impulse_probability", self.impulse_probability.is_some() && !impulses, "`reflection` or `transmission`"),
             ("one_sided", self.one_sided.is_some() && emission == Vec3::ZERO, "`emission`"),
         ];
@@ -166,6 +170,7 @@ impl Draft {
             reflection,
             transmission,
             eta: self.eta,
+            thin: self.thin.unwrap_or(false),
             impulse_probability: self.impulse_probability,
             opacity: self.opacity.unwrap_or(1.0),
             maps: Maps::default(),

@@ -1,6 +1,7 @@
 //! From a path to a [`Scene`].
 
 mod bare_mesh;
+mod bodies;
 mod environment;
 mod loader;
 mod material_draft;
@@ -38,6 +39,7 @@ pub fn load(path: &Path) -> Result<Scene> {
             )));
         }
     };
+    scene.warnings.extend(bodies::warnings(&scene));
     for warning in &mut scene.warnings {
         // Names come from files, and a terminal would obey.
         if warning.contains(char::is_control) {

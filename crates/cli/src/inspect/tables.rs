@@ -72,7 +72,8 @@ fn besides(scene: &Scene, m: &Material) -> String {
     let mut parts = Vec::new();
     match m.eta {
         Some(eta) if m.transmission != Vec3::ZERO => parts.push(format!(
-            "glass of index {eta}, reflection {}, transmission {}",
+            "{}glass of index {eta}, reflection {}, transmission {}",
+            if m.thin { "a thin sheet of " } else { "" },
             rgb(m.reflection),
             rgb(m.transmission)
         )),

@@ -8,6 +8,7 @@ use crate::shared::interrupts;
 use crate::shared::printing::{self, Notes, print};
 use luminaire::Result;
 use luminaire::picture::Format;
+use luminaire::reference::path::LONGEST_PATH;
 use luminaire::render::{End, Rendered};
 use luminaire::scene::Scene;
 use std::path::PathBuf;
@@ -85,7 +86,10 @@ fn losses(rendered: &Rendered, scene: &Scene) -> Option<String> {
             format!("; with the same options, --pixel {x},{y} --sample {} replays one", first.sample)
         },
     );
-    Some(format!("{} samples that were not finite, or lost, are left out{replay}", rendered.dropped))
+    Some(format!(
+        "{} samples are left out: not finite, or lost (light that nothing absorbs: a path ends after {LONGEST_PATH} bounces){replay}",
+        rendered.dropped
+    ))
 }
 
 /// Pixels without a sample in the pictures that are written.

@@ -26,7 +26,7 @@ pub fn run(scene: &Scene, renderer: &mut Renderer, Pixel { x, y }: Pixel, sample
         let traced = renderer.tracer.trace(&Batch { tile, samples: sample..sample + 1, group: 1 })?;
         let found = match traced.dropped.is_empty() {
             true => triple(traced.sums[0].radiance.into()),
-            false => "not finite".into(),
+            false => "not finite, or lost".into(),
         };
         ends.push(vec![renderer.backend.to_string(), found]);
     }

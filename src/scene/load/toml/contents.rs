@@ -55,6 +55,7 @@ impl File<'_> {
                 reflection: table.reflection.map(|colour| colour.0),
                 transmission: table.transmission.map(|colour| colour.0),
                 eta: table.eta.map(|eta| eta.0),
+                thin: table.thin,
                 impulse_probability: table.impulse_probability.map(|probability| probability.0),
                 opacity: table.opacity.map(|opacity| opacity.0),
                 maps: DraftMaps {

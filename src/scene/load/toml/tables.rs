@@ -131,6 +131,7 @@ pub(super) struct MaterialTable {
     pub reflection: Option<Colour>,
     pub transmission: Option<Colour>,
     pub eta: Option<Eta>,
+    pub thin: Option<bool>,
     pub impulse_probability: Option<Probability>,
     pub opacity: Option<Unit>,
     pub ambient_map: Option<Spanned<String>>,

@@ -10,14 +10,15 @@ use crate::stability::trial::Trial;
 use crate::stability::verdict::{Judgement, SURE, Verdict, Worse, place, stretch};
 use luminaire::Result;
 use luminaire::backend::Backend;
-use luminaire::reference::scatter::{MAX_SURVIVAL, SURE_THROUGHPUT};
+use luminaire::reference::path::LONGEST_PATH;
+use luminaire::reference::scatter::SURE_THROUGHPUT;
 use luminaire::scene::{Estimator, Extinction};
 
 /// The sweep over the albedo of a closed room.
 pub const DEFINITION: Definition = Definition {
     name: "albedo",
     family: Family::Light,
-    title: "albedo of a closed room, 0.5 to 0.9999, and beyond the limit of survival",
+    title: "albedo of a closed room, 0.5 to 0.9997, and beyond the longest path",
     run,
 };
 
@@ -30,7 +31,7 @@ const SIZE: (u32, u32) = (8, 2);
 struct Steps {
     /// One minus the albedo.
     absorbed: Vec<f64>,
-    /// The same beyond the limit of survival, where only roulette by throughput runs.
+    /// The same up to where most paths would be longer than the longest, where only roulette by throughput runs.
     beyond: Vec<f64>,
     /// Rays of one point.
     rays: f64,
@@ -41,11 +42,11 @@ fn run(bench: &Workbench) -> Result<Sweep> {
         bench,
         &match bench.long {
             false => {
-                Steps { absorbed: vec![0.5, 0.1, 1e-2, 1e-3, 1e-4], beyond: vec![1e-4, 3e-5, 1e-5, 1e-6], rays: 1e6 }
+                Steps { absorbed: vec![0.5, 0.1, 1e-2, 1e-3, 3e-4], beyond: vec![3e-4, 1e-4, 3e-5, 1e-5], rays: 1e6 }
             }
             true => Steps {
-                absorbed: vec![0.5, 0.3, 0.1, 0.03, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4],
-                beyond: vec![1e-3, 2e-4, 1e-4, 7e-5, 5e-5, 3e-5, 1e-5, 1e-6, 1e-7],
+                absorbed: vec![0.5, 0.3, 0.1, 0.03, 1e-2, 3e-3, 1e-3, 3e-4],
+                beyond: vec![1e-3, 3e-4, 2e-4, 1e-4, 7e-5, 5e-5, 3e-5, 1e-5],
                 rays: 8e6,
             },
         },
@@ -112,14 +113,15 @@ impl Measured {
     }
 }
 
-/// Each termination over all backends, the default first. Beyond the limit of survival the default's variance is infinite, whatever the samples say.
+/// Each termination over all backends, the default first, which is also judged beyond.
 fn verdicts(all: &[(Backend, Vec<Vec<Measured>>)], beyond: &[Measured]) -> Vec<Verdict> {
     let of = |(index, termination): (usize, Termination)| {
         let measured = || all.iter().flat_map(move |(_, of)| &of[index]);
         let judged: Vec<_> = measured().map(Measured::judgement).collect();
-        let unbounded = beyond.iter().filter(|m| index == 0 && m.albedo() > MAX_SURVIVAL.sqrt());
-        let unbounded = unbounded.map(|m| (m.albedo(), Judgement::Noisy));
-        Verdict::new(termination.name, judged.into_iter().chain(unbounded), Worse::Upwards, evidence(measured()))
+        let last = judged.iter().map(|(albedo, _)| *albedo).fold(0.0, f64::max);
+        let beyond = || beyond.iter().filter(|m| index == 0 && m.albedo() > last);
+        let judged = judged.into_iter().chain(beyond().map(Measured::judgement));
+        Verdict::new(termination.name, judged, Worse::Upwards, evidence(measured().chain(beyond())))
     };
     terminations().into_iter().enumerate().map(of).collect()
 }
@@ -212,11 +214,11 @@ fn sweep(bench: &Workbench, steps: &Steps) -> Result<Sweep> {
     }
     charts.extend([length, noise]);
 
-    let mut cap = chart("cap", "Beyond the limit of survival, 0.9999".into(), Axis::linear("mean / truth"));
+    let mut cap = chart("cap", format!("Paths that would be longer than {LONGEST_PATH} bounces are lost"), Axis::linear("mean / truth"));
     let mut beyond = Vec::new();
     for backend in bench.backends() {
         let estimator = Estimator::default();
-        let each = 1.0 / (1.0 - MAX_SURVIVAL);
+        let each = f64::from(LONGEST_PATH);
         let points: Result<Vec<Measured>> = (steps.beyond.iter())
             .map(|a| measure(bench, backend, estimator, *a, [2.0 * steps.rays, each.min(1.0 / a)]))
             .collect();
@@ -248,10 +250,8 @@ fn findings(all: &[(Backend, Vec<Vec<Measured>>)], beyond: &[Measured]) -> Findi
         1 => String::new(),
         _ => format!(", and in f32 the product of so many factors is {} off", share(rounding)),
     };
-    let beyond: Vec<_> = beyond.iter().filter(|m| 1.0 - 1.0 / m.x > MAX_SURVIVAL.sqrt()).collect();
-    let beyond_error = beyond.iter().map(|m| 2.0 * m.error / m.ratio).fold(0.0, f64::max);
-    let lowest = beyond.iter().map(|m| m.ratio).fold(f64::INFINITY, f64::min);
-    let highest = beyond.iter().map(|m| m.ratio).fold(0.0, f64::max);
+    let lowest = beyond.iter().min_by(|a, b| a.ratio.total_cmp(&b.ratio));
+    let lowest = lowest.map_or(String::new(), |m| format!("{} of the light at {:.5}", share(m.ratio), m.albedo()));
     Findings {
         starts: format!("More than 1 % off (roulette is never more than {sigma:.1} standard errors off):"),
         how: format!(
@@ -259,30 +259,21 @@ fn findings(all: &[(Backend, Vec<Vec<Measured>>)], beyond: &[Measured]) -> Findi
              literal \
              extinction counts every loss twice and leaves 1 / (1 + a); a threshold t leaves 1 - t, but its paths are {} rays long at \
              albedo \
-             {top:.4} where roulette needs {}{rounding}. Beyond albedo {MAX_SURVIVAL} roulette stops at that survival and survivors \
-             grow heavier, \
-             bounce by bounce: above {:.5} the variance is infinite. Measured there: {} to {} of the truth, with error bars that say at \
-             most {} \
-             of the mean and cannot be trusted.",
+             {top:.4} where roulette needs {}{rounding}. No weight grows, and a path that would meet more than {LONGEST_PATH} surfaces is lost: \
+             counted, and named when the render ends. Up to 0.999 that is less than one path in a million; beyond, what is left is too dark: {lowest}.",
             rays(3),
             rays(0),
-            MAX_SURVIVAL.sqrt(),
-            share(lowest),
-            share(highest),
-            share(beyond_error),
         ),
         mends: format!(
-            "Roulette by throughput is the default: no bias, and paths as long as the light lives ({} rays at {top:.4}). No surface \
-             survives with more than \
-             {MAX_SURVIVAL}, so that paths end even in a room that absorbs nothing. Limits and thresholds are off unless asked for.",
+            "Roulette by throughput is the default: no bias, and paths as long as the light lives ({} rays at {top:.4}). A path \
+             ends after {LONGEST_PATH} bounces, even in a room that absorbs nothing. Limits and thresholds are off unless asked for.",
             rays(0),
         ),
         sees: format!(
             "With the default noise and time that grow with 1 / (1 - albedo) and a right picture. With a limit of bounces or the \
              literal extinction a \
-             picture that is too dark and looks converged. Above albedo {:.5} a few glaring pixels and all others too dark; real matter \
-             stays below 0.99.",
-            MAX_SURVIVAL.sqrt(),
+             picture that is too dark and looks converged. Above albedo 0.9997 a warning that counts the lost samples, and too little light; real \
+             matter stays below 0.99."
         ),
     }
 }
