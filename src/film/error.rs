@@ -7,6 +7,7 @@
 
 use super::Film;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Added to the squared radiance that a squared error is divided by: what is darker than 0.1 counts less.
 pub const REL_MSE_FLOOR: f64 = 0.01;
@@ -29,6 +30,11 @@ const FIREFLY_FLOOR: f64 = 1e-3;
 
 /// Keeps weights finite where nothing varies.
 const TINY: f64 = 1e-30;
+
+/// So many pixels are worked on at a time, ...
+const BAND_PIXELS: usize = 1 << 17;
+/// ... but so many rows at least: those above and below are worked out once more.
+const LEAST_ROWS: usize = 16;
 
 /// How far a picture as a whole is from the truth, without its fireflies.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -78,86 +84,117 @@ impl Film {
 
     /// The estimated error of the picture; none if no pixel has samples in two parts.
     pub fn error(&self) -> Option<ErrorEstimate> {
-        Some(self.error_map()?.total)
+        self.estimate(|_| {})
     }
 
     /// The estimated error of every pixel; none if no pixel has samples in two parts.
     pub fn error_map(&self) -> Option<ErrorMap> {
-        // The fourth "channel" is the mean of the others, by which fireflies are recognised.
-        let measured: Vec<Option<[Measured; 4]>> =
-            (0..self.pixels()).into_par_iter().map(|pixel| self.measured(pixel)).collect();
-        if measured.iter().all(Option::is_none) {
-            return None;
-        }
-        // A pixel without samples in two parts (because they were not finite, or the render has just begun) has no estimate, and is left out
-        // like a firefly.
-        let unknown = |pixel: usize| {
-            let [r, g, b] = self.mean(pixel);
-            [r, g, b, (r + g + b) / 3.0].map(|mean| Measured { mean, variance: 0.0 })
-        };
-        let own: Vec<[Measured; 4]> =
-            measured.iter().enumerate().map(|(pixel, measured)| measured.unwrap_or_else(|| unknown(pixel))).collect();
-        let map = |f: &(dyn Fn(usize) -> [f64; 4] + Sync)| -> Vec<[f64; 4]> {
-            (0..own.len()).into_par_iter().map(f).collect()
-        };
-        let pooled = map(&|pixel| mean_variance(self.around(pixel).map(|j| &own[j])));
-        // What the others say about a pixel: their mean, in which noisy ones count for less.
-        let expected = map(&|pixel| {
-            [0, 1, 2, 3].map(|c| {
-                let (mut sum, mut weights) = (0.0, 0.0);
-                for j in self.around(pixel).filter(|j| *j != pixel) {
-                    let weight = 1.0 / (own[j][c].variance + pooled[j][c] + TINY);
-                    sum += weight * own[j][c].mean;
-                    weights += weight;
-                }
-                if weights > 0.0 { sum / weights } else { own[pixel][c].mean }
-            })
-        });
-        let firefly: Vec<bool> = (own.iter().zip(&expected).zip(&measured))
-            .map(|(([.., grey], [.., expected]), measured)| {
-                measured.is_none()
-                    || grey.variance > FIREFLY_VARIANCE * grey.mean * grey.mean
-                        && grey.mean > FIREFLY_CONTRAST * (expected + FIREFLY_FLOOR)
-            })
-            .collect();
+        let (mut standard_error, mut relative, mut firefly) = (Vec::new(), Vec::new(), Vec::new());
+        standard_error.reserve_exact(self.pixels());
+        relative.reserve_exact(self.pixels());
+        firefly.reserve_exact(self.pixels());
+        let total = self.estimate(|pixel| {
+            standard_error.push(pixel.standard_error);
+            relative.push(pixel.relative);
+            firefly.push(pixel.firefly);
+        })?;
+        Some(ErrorMap { standard_error, relative, firefly, total })
+    }
 
+    /// Estimates the error of the picture, and gives that of every pixel to `take`, in their order. A band of rows at a time: what is worked out on the way takes ten
+    /// times the memory of the result.
+    fn estimate(&self, mut take: impl FnMut(&PixelError)) -> Option<ErrorEstimate> {
+        let (width, height) = (self.width as usize, self.height as usize);
+        let rows = (BAND_PIXELS / width.max(1)).max(LEAST_ROWS);
         let (mut square, mut relative_square, mut left_out, mut counted) = (0.0, 0.0, 0.0, 0u64);
-        let mut errors = ErrorMap {
-            standard_error: Vec::with_capacity(own.len()),
-            relative: Vec::with_capacity(own.len()),
-            firefly,
-            total: ErrorEstimate { rmse: 0.0, rel_mse: 0.0, fireflies: 0, rel_mse_with_fireflies: 0.0 },
-        };
-        for (pixel, own_here) in own.iter().enumerate() {
-            let alone = errors.firefly[pixel];
-            let variance = if alone {
-                own_here.map(|m| m.variance)
-            } else {
-                mean_variance(self.around(pixel).filter(|j| !errors.firefly[*j]).map(|j| &own[j]))
-            };
-            let scale: [f64; 3] =
-                std::array::from_fn(|c| own_here[c].plausible(expected[pixel][c]).powi(2) + REL_MSE_FLOOR);
-            let channels = 0..3;
-            errors.standard_error.push(std::array::from_fn(|c| variance[c].sqrt() as f32));
-            let relative: f64 = channels.clone().map(|c| variance[c] / scale[c]).sum();
-            errors.relative.push((relative / 3.0).sqrt() as f32);
-            if alone {
-                let floor = |c: usize| expected[pixel][c].powi(2) + REL_MSE_FLOOR;
-                left_out += channels.map(|c| own_here[c].variance / floor(c)).sum::<f64>();
-            } else {
-                counted += 3;
-                square += channels.clone().map(|c| own_here[c].variance).sum::<f64>();
-                relative_square += channels.map(|c| own_here[c].variance / scale[c]).sum::<f64>();
+        let mut known = false;
+        for top in (0..height).step_by(rows) {
+            let band = self.band(top, (top + rows).min(height));
+            known |= band.known;
+            for pixel in &band.pixels {
+                take(pixel);
+                if pixel.firefly {
+                    left_out += pixel.relative_square;
+                } else {
+                    counted += 3;
+                    square += pixel.square;
+                    relative_square += pixel.relative_square;
+                }
             }
         }
         let counted_or_one = counted.max(1) as f64;
-        errors.total = ErrorEstimate {
+        known.then(|| ErrorEstimate {
             rmse: (square / counted_or_one).sqrt(),
             rel_mse: relative_square / counted_or_one,
-            fireflies: own.len() as u64 - counted / 3,
-            rel_mse_with_fireflies: (relative_square + left_out) / (3 * own.len()) as f64,
+            fireflies: self.pixels() as u64 - counted / 3,
+            rel_mse_with_fireflies: (relative_square + left_out) / (3 * self.pixels()) as f64,
+        })
+    }
+
+    /// The errors of the rows from `top` to before `bottom`.
+    fn band(&self, top: usize, bottom: usize) -> Band {
+        // What is known of a pixel follows from its neighbours, and what is known of those from theirs.
+        let rows = |more: usize| {
+            let rows = top.saturating_sub(more)..(bottom + more).min(self.height as usize);
+            rows.start * self.width as usize..rows.end * self.width as usize
         };
-        Some(errors)
+        // The fourth "channel" is the mean of the others, by which fireflies are recognised.
+        let own = Rows::new(rows(3), |pixel| match self.measured(pixel) {
+            Some(channels) => Own { channels, known: true },
+            // A pixel without samples in two parts (because they were not finite, or the render has just begun) has no estimate, and is left out
+            // like a firefly.
+            None => {
+                let [r, g, b] = self.mean(pixel);
+                let channels = [r, g, b, (r + g + b) / 3.0].map(|mean| Measured { mean, variance: 0.0 });
+                Own { channels, known: false }
+            }
+        });
+        let pooled = Rows::new(rows(2), |pixel| mean_variance(self.around(pixel).map(|j| &own.at(j).channels)));
+        // What the others say about a pixel: their mean, in which noisy ones count for less.
+        let expected = Rows::new(rows(1), |pixel| {
+            [0, 1, 2, 3].map(|c| {
+                let (mut sum, mut weights) = (0.0, 0.0);
+                for j in self.around(pixel).filter(|j| *j != pixel) {
+                    let neighbour = own.at(j).channels[c];
+                    let weight = 1.0 / (neighbour.variance + pooled.at(j)[c] + TINY);
+                    sum += weight * neighbour.mean;
+                    weights += weight;
+                }
+                if weights > 0.0 { sum / weights } else { own.at(pixel).channels[c].mean }
+            })
+        });
+        let firefly = Rows::new(rows(1), |pixel| {
+            let (Own { channels: [.., grey], known }, [.., expected]) = (own.at(pixel), expected.at(pixel));
+            !known
+                || grey.variance > FIREFLY_VARIANCE * grey.mean * grey.mean
+                    && grey.mean > FIREFLY_CONTRAST * (expected + FIREFLY_FLOOR)
+        });
+        let pixels = Rows::new(rows(0), |pixel| {
+            let (own_here, expected) = (&own.at(pixel).channels, expected.at(pixel));
+            let alone = *firefly.at(pixel);
+            let variance = if alone {
+                own_here.map(|m| m.variance)
+            } else {
+                mean_variance(self.around(pixel).filter(|j| !firefly.at(*j)).map(|j| &own.at(j).channels))
+            };
+            let scale: [f64; 3] =
+                std::array::from_fn(|c| own_here[c].plausible(expected[c]).powi(2) + REL_MSE_FLOOR);
+            let channels = 0..3;
+            let relative: f64 = channels.clone().map(|c| variance[c] / scale[c]).sum();
+            let floor = |c: usize| expected[c].powi(2) + REL_MSE_FLOOR;
+            let relative_square = |scale: &dyn Fn(usize) -> f64| {
+                channels.clone().map(|c| own_here[c].variance / scale(c)).sum::<f64>()
+            };
+            PixelError {
+                standard_error: std::array::from_fn(|c| variance[c].sqrt() as f32),
+                relative: (relative / 3.0).sqrt() as f32,
+                firefly: alone,
+                square: channels.clone().map(|c| own_here[c].variance).sum(),
+                relative_square: if alone { relative_square(&floor) } else { relative_square(&|c| scale[c]) },
+            }
+        });
+        let known = pixels.pixels.clone().any(|pixel| own.at(pixel).known);
+        Band { known, pixels: pixels.values }
     }
 
     /// Mean and variance of a pixel: red, green, blue, and their mean.
@@ -185,6 +222,52 @@ impl Film {
         let (x, y) = (pixel % width, pixel / width);
         let columns = x.saturating_sub(1)..=(x + 1).min(width - 1);
         (y.saturating_sub(1)..=(y + 1).min(height - 1)).flat_map(move |y| columns.clone().map(move |x| y * width + x))
+    }
+}
+
+/// A pixel's mean and variance, from its own samples.
+struct Own {
+    /// Red, green, blue, and their mean.
+    channels: [Measured; 4],
+    /// Whether the variance could be measured.
+    known: bool,
+}
+
+/// What is found out about a pixel.
+#[derive(Debug, PartialEq)]
+struct PixelError {
+    standard_error: [f32; 3],
+    relative: f32,
+    firefly: bool,
+    /// Variance, added up over the channels.
+    square: f64,
+    /// The same over the squared radiance.
+    relative_square: f64,
+}
+
+/// What is found out about some rows.
+struct Band {
+    /// Whether the variance of any pixel could be measured.
+    known: bool,
+    pixels: Vec<PixelError>,
+}
+
+/// A value for every pixel of some rows of a film.
+struct Rows<T> {
+    /// Indices of the pixels.
+    pixels: Range<usize>,
+    values: Vec<T>,
+}
+
+impl<T: Send> Rows<T> {
+    /// The values that `of` has for the pixels of these indices.
+    fn new(pixels: Range<usize>, of: impl Fn(usize) -> T + Send + Sync) -> Self {
+        Rows { values: pixels.clone().into_par_iter().map(of).collect(), pixels }
+    }
+
+    /// The value of a pixel of these rows.
+    fn at(&self, pixel: usize) -> &T {
+        &self.values[pixel - self.pixels.start]
     }
 }
 
@@ -254,6 +337,20 @@ mod tests {
         assert!((mean.sqrt() / expected - 1.0).abs() < 0.02);
         let relative = error.relative.iter().map(|e| f64::from(e * e)).sum::<f64>() / 4096.0;
         assert!((relative.sqrt() * 9.01f64.sqrt() / expected - 1.0).abs() < 0.02);
+    }
+
+    #[test]
+    fn bands_do_not_show() {
+        let wide = film(16, 0.5, |x, y| if (x * y) % 97 == 3 { 50.0 } else { 1.0 + f64::from(x % 3) });
+        let whole = wide.band(0, SIZE as usize);
+        for (top, bottom) in [(0, 1), (0, 16), (16, 32), (1, 2), (31, 64), (63, 64)] {
+            let band = wide.band(top, bottom);
+            let expected = &whole.pixels[top * SIZE as usize..bottom * SIZE as usize];
+            assert_eq!(band.pixels.len(), expected.len());
+            for (found, expected) in band.pixels.iter().zip(expected) {
+                assert_eq!(found, expected);
+            }
+        }
     }
 
     #[test]

@@ -74,6 +74,11 @@ impl MapFile {
         MapFile { names, folder: folder.to_owned(), at, clamp: false, base: 0.0, gain: 1.0, channel: Channel::Any }
     }
 
+    /// The file, if there is one.
+    pub(super) fn path(&self) -> Option<PathBuf> {
+        Some(self.find().ok()?.0)
+    }
+
     /// The file, and a warning if it is not quite the one that is named.
     fn find(&self) -> Result<(PathBuf, Option<String>), String> {
         let written = &self.names[0];

@@ -231,6 +231,7 @@ mod tests {
             integrator: Integrator::Path(estimator),
             settings: RenderSettings::default(),
             warnings: vec!["one.obj:3: something odd".into()],
+            files: vec![],
         };
         let text = describe(&scene);
         for part in [
