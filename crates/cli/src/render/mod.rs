@@ -24,6 +24,7 @@ use self::stats::Seconds;
 use crate::shared::backend_name;
 use crate::shared::film_size::FilmSize;
 use crate::shared::interrupts;
+use crate::shared::outputs::Outputs;
 use crate::shared::printing::Notes;
 use crate::shared::values::Pixel;
 use luminaire::backend::{self, Renderer, Request};
@@ -40,12 +41,16 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     let notes = Notes { quiet: options.quiet };
     let request = backend_name::request(options.backend, options.device.as_deref())?;
     outputs::check_layers(options)?;
-    checkpoint::check(options)?;
     options.estimator.check()?;
+    let mut outputs = Outputs::default();
     let mut pictures = vec![];
+    let mut locks = vec![];
     if options.pixel.is_none() {
-        pictures = outputs::pictures(options)?;
-        outputs::check_others(options, &pictures)?;
+        pictures = outputs::pictures(options, &mut outputs)?;
+        outputs::declare_others(options, &mut outputs)?;
+        checkpoint::declare(options, &mut outputs)?;
+        locks = checkpoint::lock(options, notes)?;
+        checkpoint::check(options)?;
     }
     interrupts::listen(notes)?;
 
@@ -53,6 +58,7 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     let start = Instant::now();
     let mut scene = scene::load(&options.scene)?;
     seconds.load = start.elapsed().as_secs_f64();
+    outputs.check(scene.files.iter().map(|path| ("a file of the scene", &**path)))?;
     change(&mut scene, options)?;
     scene.warnings.iter().for_each(|warning| notes.warn(warning));
 
@@ -61,7 +67,9 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     if options.watch {
         return watch::repeat(&interrupts::STOP, &render);
     }
-    render()
+    let code = render();
+    drop(locks);
+    code
 }
 
 /// Puts the options in the place of what the scene says. A usage error if they do not fit it.
