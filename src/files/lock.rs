@@ -39,7 +39,10 @@ impl Lock {
         for _ in 0..TRIES {
             // A pipe would have to be waited for.
             if beside.exists() && !beside.is_file() {
-                return Err(refused(format!("in the place of its lock, {}, is something that is not a file", beside.display())));
+                return Err(refused(format!(
+                    "in the place of its lock, {}, is something that is not a file",
+                    beside.display()
+                )));
             }
             let mut file =
                 File::options().read(true).write(true).create(true).truncate(false).open(&beside).map_err(failed)?;
@@ -77,7 +80,10 @@ impl Lock {
             }
             let host = gethostname::gethostname().to_string_lossy().into_owned();
             let about = format!("{MARK} process {} on {host}\n", std::process::id());
-            file.set_len(0).and_then(|()| file.rewind()).and_then(|()| file.write_all(about.as_bytes())).map_err(failed)?;
+            file.set_len(0)
+                .and_then(|()| file.rewind())
+                .and_then(|()| file.write_all(about.as_bytes()))
+                .map_err(failed)?;
             return Ok(Some(Lock { path: beside, file }));
         }
         Err(refused(format!("others take and leave its lock {} all the time", beside.display())))

@@ -34,7 +34,8 @@ impl Place {
         let (Some(a), Some(b)) = (&self.whole, &other.whole) else { return false };
         let lower = |path: &Path| path.file_name().map(|name| name.to_string_lossy().to_lowercase());
         // What exists has been compared already: only names of files to come may differ in their case.
-        let may_be = a.parent() == b.parent() && lower(a) == lower(b) && (self.there.is_none() || other.there.is_none());
+        let may_be =
+            a.parent() == b.parent() && lower(a) == lower(b) && (self.there.is_none() || other.there.is_none());
         a == b || may_be && ignores_case(&folder_of(a))
     }
 

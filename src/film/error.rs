@@ -177,14 +177,12 @@ impl Film {
             } else {
                 mean_variance(self.around(pixel).filter(|j| !firefly.at(*j)).map(|j| &own.at(j).channels))
             };
-            let scale: [f64; 3] =
-                std::array::from_fn(|c| own_here[c].plausible(expected[c]).powi(2) + REL_MSE_FLOOR);
+            let scale: [f64; 3] = std::array::from_fn(|c| own_here[c].plausible(expected[c]).powi(2) + REL_MSE_FLOOR);
             let channels = 0..3;
             let relative: f64 = channels.clone().map(|c| variance[c] / scale[c]).sum();
             let floor = |c: usize| expected[c].powi(2) + REL_MSE_FLOOR;
-            let relative_square = |scale: &dyn Fn(usize) -> f64| {
-                channels.clone().map(|c| own_here[c].variance / scale(c)).sum::<f64>()
-            };
+            let relative_square =
+                |scale: &dyn Fn(usize) -> f64| channels.clone().map(|c| own_here[c].variance / scale(c)).sum::<f64>();
             PixelError {
                 standard_error: std::array::from_fn(|c| variance[c].sqrt() as f32),
                 relative: (relative / 3.0).sqrt() as f32,

@@ -1,9 +1,9 @@
 //! Films to disk.
 
 use super::{Aovs, ErrorEstimate, Film};
+use crate::Result;
 use crate::files::write_file_atomically;
 use crate::picture::{Attribute, Exr, Format, Values, save_linear};
-use crate::Result;
 use std::fs::File;
 use std::path::Path;
 

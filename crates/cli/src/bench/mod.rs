@@ -16,8 +16,8 @@ use luminaire::picture;
 use luminaire::{Error, Result};
 use luminaire_measure::Workbench;
 use luminaire_measure::bench::{
-    Baseline, BenchScene, Definition, Effort, Machine, Outcome, Report, SECTIONS, STANDARD, Settings, file_name, html, markdown,
-    named,
+    Baseline, BenchScene, Definition, Effort, Machine, Outcome, Report, SECTIONS, STANDARD, Settings, file_name, html,
+    markdown, named,
 };
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;

@@ -28,7 +28,6 @@ use crate::shared::outputs::Outputs;
 use crate::shared::printing::Notes;
 use crate::shared::values::Pixel;
 use luminaire::backend::{self, Renderer, Request};
-use luminaire::film::Film;
 use luminaire::render::{End, Limits, Rendered, aovs, resume};
 use luminaire::scene::{self, FilmSettings, Scene};
 use luminaire::{Error, Result};
@@ -79,7 +78,7 @@ fn change(scene: &mut Scene, options: &Options) -> Result<()> {
     scene.settings.seed = options.seed.unwrap_or(scene.settings.seed);
     scene.settings.exposure = options.exposure.unwrap_or(scene.settings.exposure);
     let FilmSettings { width, height, .. } = scene.film;
-    Film::check_size(width, height)?;
+    outputs::demand(options, &scene.film).check()?;
     match options.pixel {
         Some(Pixel { x, y }) if x >= width || y >= height => {
             Err(Error::Usage(format!("--pixel {x},{y} is not on the film, which has {width} x {height} pixels")))

@@ -4,6 +4,7 @@ use super::options::Options;
 use super::outcome::Outcome;
 use super::stats::Stats;
 use crate::shared::outputs::Outputs;
+use luminaire::film::Demand;
 use luminaire::part::Provenance;
 use luminaire::scene::FilmSettings;
 use luminaire::{Error, Result, files, part, picture};
@@ -70,6 +71,19 @@ pub fn declare_others(options: &Options, outputs: &mut Outputs) -> Result<()> {
         outputs.add("--stats", path)?;
     }
     Ok(())
+}
+
+/// What the film and its files take of this machine's memory.
+pub fn demand(options: &Options, film: &FilmSettings) -> Demand {
+    let exr = options.output.iter().any(|path| is_exr(path));
+    Demand {
+        width: film.width,
+        height: film.height,
+        sums: options.checkpoint.is_some() || options.samples.is_some(),
+        exr,
+        aovs: options.wants_aovs(),
+        errors: options.error_map.is_some(),
+    }
 }
 
 /// Writes the pictures, and then the figures of `--stats`.
