@@ -9,6 +9,7 @@ use super::Film;
 use super::brightness::Brightness;
 use super::error_estimate::ErrorEstimate;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// The truth of 95 % of all values is within so many standard errors: Student's t for 27 degrees of freedom, 3 of each of 9 pixels.
 pub const INTERVAL_95: f64 = 2.052;
@@ -23,6 +24,11 @@ const FIREFLY_FLOOR: f64 = 1e-3;
 
 /// A standard error of this part of the picture's half-power mean is none; it keeps weights finite where nothing varies.
 const TINY: f64 = 1e-15;
+
+/// So many pixels are worked on at a time, ...
+const BAND_PIXELS: usize = 1 << 17;
+/// ... but so many rows at least: those above and below are worked out once more.
+const LEAST_ROWS: usize = 16;
 
 /// The estimated error of every pixel.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,99 +53,126 @@ impl Film {
 
     /// The estimated error of the picture; none if no pixel has samples in two parts, or the picture is black but for its fireflies.
     pub fn error(&self) -> Option<ErrorEstimate> {
-        self.error_map()?.total
+        self.estimate(|_, _| {})?
     }
 
     /// The estimated error of every pixel; none if no pixel has samples in two parts.
     pub fn error_map(&self) -> Option<ErrorMap> {
-        // The fourth "channel" is the mean of the others, by which fireflies are recognised.
-        let measured: Vec<Option<[Measured; 4]>> =
-            (0..self.pixels()).into_par_iter().map(|pixel| self.measured(pixel)).collect();
-        if measured.iter().all(Option::is_none) {
-            return None;
-        }
-        // A pixel without samples in two parts (because they were not finite, or the render has just begun) has no estimate, and is left out
-        // like a firefly.
-        let unknown = |pixel: usize| {
-            let [r, g, b] = self.mean(pixel);
-            [r, g, b, (r + g + b) / 3.0].map(|mean| Measured { mean, variance: 0.0 })
-        };
-        let own: Vec<[Measured; 4]> =
-            measured.iter().enumerate().map(|(pixel, measured)| measured.unwrap_or_else(|| unknown(pixel))).collect();
-        // What is small is so for this picture, whatever the unit of its light.
-        let half_power_mean = Brightness::of(own.iter().flat_map(colours).map(|m| m.mean)).half_power_mean();
-        let tiny = (TINY * half_power_mean).powi(2).max(f64::MIN_POSITIVE);
-        let map = |f: &(dyn Fn(usize) -> [f64; 4] + Sync)| -> Vec<[f64; 4]> {
-            (0..own.len()).into_par_iter().map(f).collect()
-        };
-        let pooled = map(&|pixel| mean_variance(self.around(pixel).map(|j| &own[j])));
-        // What the others say about a pixel: their mean, in which noisy ones count for less.
-        let expected = map(&|pixel| {
-            [0, 1, 2, 3].map(|c| {
-                let (mut sum, mut weights) = (0.0, 0.0);
-                for j in self.around(pixel).filter(|j| *j != pixel) {
-                    let weight = 1.0 / (own[j][c].variance + pooled[j][c] + tiny);
-                    sum += weight * own[j][c].mean;
-                    weights += weight;
-                }
-                if weights > 0.0 { sum / weights } else { own[pixel][c].mean }
-            })
-        });
-        let firefly: Vec<bool> = (own.iter().zip(&expected).zip(&measured))
-            .map(|(([.., grey], [.., expected]), measured)| {
-                measured.is_none()
-                    || grey.variance > FIREFLY_VARIANCE * grey.mean * grey.mean
-                        && grey.mean > FIREFLY_CONTRAST * (expected + FIREFLY_FLOOR * half_power_mean)
-            })
-            .collect();
-
-        let plausible = |pixel: usize| -> [f64; 3] {
-            std::array::from_fn(|c| own[pixel][c].plausible(expected[pixel][c]))
-        };
-        let brightness =
-            Brightness::of((0..own.len()).filter(|pixel| !firefly[*pixel]).flat_map(|pixel| plausible(pixel)));
-        let known = !brightness.is_black();
-        let relative = |variance: f64, radiance: f64| brightness.relative_square(variance.sqrt(), radiance);
-
-        let (mut square, mut relative_square, mut left_out, mut counted) = (0.0, 0.0, 0.0, 0u64);
-        let mut errors = ErrorMap {
-            standard_error: Vec::with_capacity(own.len()),
-            relative: Vec::with_capacity(own.len()),
-            firefly,
-            total: None,
-        };
-        for (pixel, own_here) in own.iter().enumerate() {
-            let alone = errors.firefly[pixel];
-            let variance = if alone {
-                own_here.map(|m| m.variance)
-            } else {
-                mean_variance(self.around(pixel).filter(|j| !errors.firefly[*j]).map(|j| &own[j]))
-            };
-            let radiance = plausible(pixel);
-            errors.standard_error.push(std::array::from_fn(|c| variance[c].sqrt() as f32));
-            let sum = |of: &dyn Fn(usize) -> f64| (0..3).map(of).sum::<f64>();
-            errors.relative.push(match known && measured[pixel].is_some() {
-                true => (sum(&|c| relative(variance[c], radiance[c])) / 3.0).sqrt() as f32,
+        let (mut standard_error, mut relative, mut firefly) = (Vec::new(), Vec::new(), Vec::new());
+        standard_error.reserve_exact(self.pixels());
+        relative.reserve_exact(self.pixels());
+        firefly.reserve_exact(self.pixels());
+        let total = self.estimate(|pixel, brightness| {
+            standard_error.push(pixel.variance.map(|variance| variance.sqrt() as f32));
+            relative.push(match pixel.known && !brightness.is_black() {
+                true => (relative_squares(brightness, pixel.variance, pixel.radiance) / 3.0).sqrt() as f32,
                 false => f32::NAN,
             });
-            if alone {
-                left_out += sum(&|c| relative(own_here[c].variance, expected[pixel][c]));
+            firefly.push(pixel.firefly);
+        })?;
+        Some(ErrorMap { standard_error, relative, firefly, total })
+    }
+
+    /// Estimates the error of the picture, and gives that of every pixel to `take`, in their order, with the brightness that it is relative to. None
+    /// if no pixel has samples in two parts; within, none if the picture is black but for its fireflies.
+    ///
+    /// A band of rows at a time: what is worked out on the way takes ten times the memory of the result. Twice over: how bright the picture
+    /// is without its fireflies has to be known first.
+    fn estimate(&self, mut take: impl FnMut(&PixelError, Brightness)) -> Option<Option<ErrorEstimate>> {
+        // What is small is so for this picture, whatever the unit of its light.
+        let with_fireflies = Brightness::of((0..self.pixels()).flat_map(|pixel| self.mean(pixel))).half_power_mean();
+        let height = self.height as usize;
+        let rows = (BAND_PIXELS / (self.width as usize).max(1)).max(LEAST_ROWS);
+        let bands = || (0..height).step_by(rows).map(|top| self.band(top, (top + rows).min(height), with_fireflies));
+
+        let mut unknown = 0u64;
+        let plausible = |pixel: PixelError| {
+            unknown += u64::from(!pixel.known);
+            (!pixel.firefly).then_some(pixel.radiance)
+        };
+        let brightness = Brightness::of(bands().flatten().filter_map(plausible).flatten());
+        let all = self.pixels() as u64;
+        if unknown == all {
+            return None;
+        }
+
+        let (mut square, mut relative_square, mut left_out, mut counted) = (0.0, 0.0, 0.0, 0u64);
+        for pixel in bands().flatten() {
+            take(&pixel, brightness);
+            if pixel.firefly {
+                left_out += relative_squares(brightness, pixel.own_variance, pixel.expected);
             } else {
                 counted += 1;
-                square += sum(&|c| own_here[c].variance);
-                relative_square += sum(&|c| relative(own_here[c].variance, radiance[c]));
+                square += pixel.own_variance.iter().sum::<f64>();
+                relative_square += relative_squares(brightness, pixel.own_variance, pixel.radiance);
             }
         }
-        let all = own.len() as u64;
-        let unknown = measured.iter().filter(|measured| measured.is_none()).count() as u64;
-        errors.total = known.then(|| ErrorEstimate {
+        Some((!brightness.is_black()).then(|| ErrorEstimate {
             rmse: (square / (3 * counted) as f64).sqrt(),
             rel_mse: relative_square / (3 * counted) as f64,
             fireflies: all - counted - unknown,
             unknown,
             rel_mse_with_fireflies: (relative_square + left_out) / (3 * (all - unknown)) as f64,
+        }))
+    }
+
+    /// The errors of the rows from `top` to before `bottom` of a picture of this half-power mean.
+    fn band(&self, top: usize, bottom: usize, half_power_mean: f64) -> Vec<PixelError> {
+        // What is known of a pixel follows from its neighbours, and what is known of those from theirs.
+        let rows = |more: usize| {
+            let rows = top.saturating_sub(more)..(bottom + more).min(self.height as usize);
+            rows.start * self.width as usize..rows.end * self.width as usize
+        };
+        let tiny = (TINY * half_power_mean).powi(2).max(f64::MIN_POSITIVE);
+        // The fourth "channel" is the mean of the others, by which fireflies are recognised.
+        let own = Rows::new(rows(3), |pixel| match self.measured(pixel) {
+            Some(channels) => Own { channels, known: true },
+            // A pixel without samples in two parts (because they were not finite, or the render has just begun) has no estimate, and is left out
+            // like a firefly.
+            None => {
+                let [r, g, b] = self.mean(pixel);
+                let channels = [r, g, b, (r + g + b) / 3.0].map(|mean| Measured { mean, variance: 0.0 });
+                Own { channels, known: false }
+            }
         });
-        Some(errors)
+        let pooled = Rows::new(rows(2), |pixel| mean_variance(self.around(pixel).map(|j| &own.at(j).channels)));
+        // What the others say about a pixel: their mean, in which noisy ones count for less.
+        let expected = Rows::new(rows(1), |pixel| {
+            [0, 1, 2, 3].map(|c| {
+                let (mut sum, mut weights) = (0.0, 0.0);
+                for j in self.around(pixel).filter(|j| *j != pixel) {
+                    let neighbour = own.at(j).channels[c];
+                    let weight = 1.0 / (neighbour.variance + pooled.at(j)[c] + tiny);
+                    sum += weight * neighbour.mean;
+                    weights += weight;
+                }
+                if weights > 0.0 { sum / weights } else { own.at(pixel).channels[c].mean }
+            })
+        });
+        let firefly = Rows::new(rows(1), |pixel| {
+            let (Own { channels: [.., grey], known }, [.., expected]) = (own.at(pixel), expected.at(pixel));
+            !known
+                || grey.variance > FIREFLY_VARIANCE * grey.mean * grey.mean
+                    && grey.mean > FIREFLY_CONTRAST * (expected + FIREFLY_FLOOR * half_power_mean)
+        });
+        let pixels = Rows::new(rows(0), |pixel| {
+            let (Own { channels, known }, expected) = (own.at(pixel), expected.at(pixel));
+            let alone = *firefly.at(pixel);
+            let variance = if alone {
+                channels.map(|m| m.variance)
+            } else {
+                mean_variance(self.around(pixel).filter(|j| !firefly.at(*j)).map(|j| &own.at(j).channels))
+            };
+            PixelError {
+                variance: colours(variance),
+                own_variance: colours(channels.map(|m| m.variance)),
+                radiance: std::array::from_fn(|c| channels[c].plausible(expected[c])),
+                expected: colours(*expected),
+                firefly: alone,
+                known: *known,
+            }
+        });
+        pixels.values
     }
 
     /// Mean and variance of a pixel: red, green, blue, and their mean.
@@ -170,6 +203,49 @@ impl Film {
     }
 }
 
+/// A pixel's mean and variance, from its own samples.
+struct Own {
+    /// Red, green, blue, and their mean.
+    channels: [Measured; 4],
+    /// Whether the variance could be measured.
+    known: bool,
+}
+
+/// What is found out about a pixel.
+#[derive(Debug, PartialEq)]
+struct PixelError {
+    /// Of the mean, by channel, from the neighbourhood too.
+    variance: [f64; 3],
+    /// From its own samples alone.
+    own_variance: [f64; 3],
+    /// As far as it is known ([`Measured::plausible`]).
+    radiance: [f64; 3],
+    /// The radiance that its neighbours lead to expect.
+    expected: [f64; 3],
+    firefly: bool,
+    /// Whether its variance could be measured.
+    known: bool,
+}
+
+/// A value for every pixel of some rows of a film.
+struct Rows<T> {
+    /// Indices of the pixels.
+    pixels: Range<usize>,
+    values: Vec<T>,
+}
+
+impl<T: Send> Rows<T> {
+    /// The values that `of` has for the pixels of these indices.
+    fn new(pixels: Range<usize>, of: impl Fn(usize) -> T + Send + Sync) -> Self {
+        Rows { values: pixels.clone().into_par_iter().map(of).collect(), pixels }
+    }
+
+    /// The value of a pixel of these rows.
+    fn at(&self, pixel: usize) -> &T {
+        &self.values[pixel - self.pixels.start]
+    }
+}
+
 /// Mean of a pixel in one channel, and the variance of that mean.
 #[derive(Debug, Clone, Copy)]
 struct Measured {
@@ -188,9 +264,18 @@ impl Measured {
     }
 }
 
-/// Red, green and blue of a pixel, without their mean.
-fn colours([r, g, b, _]: &[Measured; 4]) -> [Measured; 3] {
-    [*r, *g, *b]
+/// The three that are colours of four.
+fn colours([r, g, b, _]: [f64; 4]) -> [f64; 3] {
+    [r, g, b]
+}
+
+/// The variances relative to the squared radiances, added up over the channels.
+fn relative_squares(brightness: Brightness, variance: [f64; 3], radiance: [f64; 3]) -> f64 {
+    variance
+        .iter()
+        .zip(radiance)
+        .map(|(variance, radiance)| brightness.relative_square(variance.sqrt(), radiance))
+        .sum()
 }
 
 /// Mean of the variances of some pixels, by channel.
@@ -244,6 +329,20 @@ mod tests {
         assert!((mean.sqrt() / expected - 1.0).abs() < 0.02);
         let relative = error.relative.iter().map(|e| f64::from(e * e)).sum::<f64>() / 4096.0;
         assert!((relative.sqrt() * over / expected - 1.0).abs() < 0.02);
+    }
+
+    #[test]
+    fn bands_do_not_show() {
+        let wide = film(16, 0.5, |x, y| if (x * y) % 97 == 3 { 50.0 } else { 1.0 + f64::from(x % 3) });
+        let whole = wide.band(0, SIZE as usize, 1.0);
+        for (top, bottom) in [(0, 1), (0, 16), (16, 32), (1, 2), (31, 64), (63, 64)] {
+            let band = wide.band(top, bottom, 1.0);
+            let expected = &whole[top * SIZE as usize..bottom * SIZE as usize];
+            assert_eq!(band.len(), expected.len());
+            for (found, expected) in band.iter().zip(expected) {
+                assert_eq!(found, expected);
+            }
+        }
     }
 
     #[test]
@@ -323,7 +422,9 @@ mod tests {
         let mut black = film(16, 0.5, |_, _| 0.0);
         let errors = black.error_map().unwrap();
         assert_eq!((errors.total, black.error()), (None, None));
-        assert!(errors.relative.iter().all(|e| e.is_nan()) && errors.standard_error.iter().flatten().all(|e| *e == 0.0));
+        assert!(
+            errors.relative.iter().all(|e| e.is_nan()) && errors.standard_error.iter().flatten().all(|e| *e == 0.0)
+        );
         // One sample of all has found light: that is no picture yet.
         black.sums[500][2] = [1e-5; 3];
         let errors = black.error_map().unwrap();

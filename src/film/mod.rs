@@ -3,6 +3,7 @@
 mod aov;
 mod batch;
 mod brightness;
+mod demand;
 mod error;
 mod error_estimate;
 mod output;
@@ -10,11 +11,12 @@ mod output;
 pub use aov::{AovSum, Aovs};
 pub use batch::{Batch, MOST_RADIANCE, PixelSum, Rays, SampleId, Tile};
 pub use brightness::{Brightness, REL_MSE};
+pub use demand::Demand;
 pub use error::{ErrorMap, INTERVAL_95};
 pub use error_estimate::{ErrorEstimate, relative_in_words};
 
+use crate::Result;
 use crate::sampling::PARTS;
-use crate::{Error, Result};
 use std::collections::BTreeMap;
 
 /// Everything measured so far: for every pixel, rows from the top, the sums of the radiance over the independent parts of its samples, and
@@ -47,25 +49,13 @@ impl Film {
         let pixels = width as usize * height as usize;
         let mut film =
             Film { width, height, first_sample: 0, sums: Vec::new(), samples: Vec::new(), dropped: BTreeMap::new() };
-        let refused = |_| too_large(width, height, "what the system would give".into());
+        let demand = Demand { width, height, ..Demand::default() };
+        let refused = |_| demand.too_large("what the system would give".into());
         film.sums.try_reserve_exact(pixels).map_err(refused)?;
         film.samples.try_reserve_exact(pixels).map_err(refused)?;
         film.sums.resize(pixels, Default::default());
         film.samples.resize(pixels, 0);
         Ok(film)
-    }
-
-    /// Checks that a film of this size, and what writing it takes, fits into the memory that is free now.
-    ///
-    /// # Errors
-    /// [`Error::Limit`] if it does not.
-    pub fn check_size(width: u32, height: u32) -> Result<()> {
-        if u64::from(width) * u64::from(height) > u64::from(u32::MAX) {
-            return Err(Error::Usage(format!(
-                "{width} x {height} pixels are more than the 2^32 - 1 that have a number"
-            )));
-        }
-        check_memory(width, height, crate::memory::available())
     }
 
     /// Number of pixels.
@@ -155,30 +145,6 @@ impl Film {
     }
 }
 
-/// Bytes a pixel: the film's, 200 while its error is estimated, or while it is written with it.
-const BYTES_PER_PIXEL: u64 = 24 * PARTS as u64 + 4 + 200;
-
-/// Refuses a film that `available` bytes cannot hold.
-fn check_memory(width: u32, height: u32, available: Option<u64>) -> Result<()> {
-    match available {
-        Some(bytes) if u64::from(width) * u64::from(height) * BYTES_PER_PIXEL > bytes => {
-            Err(too_large(width, height, format!("{:.1} GiB, what is free now", bytes as f64 / f64::from(1 << 30))))
-        }
-        _ => Ok(()),
-    }
-}
-
-fn too_large(width: u32, height: u32, limit: String) -> Error {
-    let bytes = u64::from(width) * u64::from(height) * BYTES_PER_PIXEL;
-    Error::Limit {
-        what: format!("a film of {width} x {height} pixels"),
-        needed: format!("{:.1} GiB of memory", bytes as f64 / f64::from(1 << 30)),
-        device: "this machine".into(),
-        limit,
-        advice: "choose a smaller --width and --height".into(),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -248,15 +214,5 @@ mod tests {
         film.add(&Batch { tile, samples: 0..8, group: 2 }, &sums);
         assert_eq!(film.part_samples(0), [2, 1, 0, 2]);
         assert_eq!(film.mean(0), [4.0; 3]);
-    }
-
-    #[test]
-    fn absurd_sizes_are_refused() {
-        let error = check_memory(65536, 65536, Some(8 << 30)).unwrap_err().to_string();
-        assert!(
-            error.contains("65536 x 65536") && error.contains("1200.0 GiB") && error.contains("8.0 GiB"),
-            "{error}"
-        );
-        assert!(check_memory(1920, 1080, Some(8 << 30)).is_ok());
     }
 }

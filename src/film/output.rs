@@ -1,9 +1,10 @@
 //! Films to disk.
 
 use super::{Aovs, ErrorEstimate, Film};
-use crate::files::write_atomically;
+use crate::Result;
+use crate::files::write_file_atomically;
 use crate::picture::{Attribute, Exr, Format, Values, save_linear};
-use crate::{Error, Result};
+use std::fs::File;
 use std::path::Path;
 
 impl Film {
@@ -13,7 +14,7 @@ impl Film {
     /// [`Error::Usage`] for an unknown ending, [`Error::Write`] if the system refuses; then nothing has changed at `path`.
     pub fn save(&self, path: &Path, exposure: f32) -> Result<()> {
         match Format::of(path)? {
-            Format::Exr => self.save_exr(path, vec![], vec![]),
+            Format::Exr => self.save_exr(path, vec![], vec![], |_| Ok(())),
             Format::Png | Format::Hdr => save_linear(path, self.width, self.height, &self.to_linear(), exposure),
         }
     }
@@ -25,10 +26,10 @@ impl Film {
     pub fn save_with_aovs(&self, path: &Path, aovs: &Aovs) -> Result<()> {
         let mut more = aovs.channels();
         more.push(("samples".into(), Values::Integer(self.samples.clone())));
-        self.save_exr(path, more, vec![])
+        self.save_exr(path, more, vec![], |_| Ok(()))
     }
 
-    /// Writes an EXR picture with further channels and attributes.
+    /// Writes an EXR picture with further channels and attributes; `finish` may still change the file.
     ///
     /// # Errors
     /// [`Error::Write`] if the system refuses; then nothing has changed at `path`.
@@ -37,18 +38,22 @@ impl Film {
         path: &Path,
         more: Vec<(String, Values)>,
         about: Vec<(&str, Attribute<'_>)>,
+        finish: impl FnOnce(&mut File) -> std::io::Result<()>,
     ) -> Result<()> {
-        let bytes = encode_exr(self, more, about).map_err(|e| Error::write(path, e))?;
-        write_atomically(path, |out| out.write_all(&bytes))
+        write_file_atomically(path, |file| {
+            write_exr(file, self, more, about)?;
+            finish(file)
+        })
     }
 }
 
-/// The bytes of an EXR file: a film's means, their standard errors, and `more`.
-fn encode_exr<'a>(
+/// Writes an EXR file: a film's means, their standard errors, and `more`.
+fn write_exr<'a>(
+    out: &mut File,
     film: &Film,
     more: Vec<(String, Values)>,
     mut attributes: Vec<(&'a str, Attribute<'a>)>,
-) -> std::io::Result<Vec<u8>> {
+) -> std::io::Result<()> {
     let (linear, errors) = (film.to_linear(), film.error_map());
     attributes.push(("samplesPerPixel", Attribute::Number(f64::from(film.least_samples()))));
     attributes.push(("droppedSamples", Attribute::Number(film.dropped.values().copied().map(f64::from).sum())));
@@ -60,7 +65,7 @@ fn encode_exr<'a>(
     let error = errors.as_ref().map(|errors| &errors.standard_error[..]);
     let rgb = bytemuck::cast_slice(&linear);
     let exr = Exr { width: film.width, height: film.height, rgb, error, more, attributes: &attributes };
-    exr.encode().map_err(std::io::Error::other)
+    exr.write(out).map_err(std::io::Error::other)
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! Writes and reads one part of a render, or goes on from it.
 
+use super::digest::{self, BLANK, DIGEST};
 use super::provenance::Provenance;
 use crate::film::{Film, SampleId};
 use crate::picture::{self, Attribute, Values};
@@ -73,16 +74,21 @@ pub fn save(path: &Path, rendered: &Rendered, provenance: &Provenance) -> Result
     }
     let json = |value: serde_json::Result<String>| value.map_err(|e| Error::write(path, e));
     let (provenance, counts) = (json(serde_json::to_string(provenance))?, json(serde_json::to_string(&counts))?);
-    let about = vec![(PROVENANCE, Attribute::Text(&provenance)), (COUNTS, Attribute::Text(&counts))];
-    film.save_exr(path, channels, about)
+    let about = vec![
+        (PROVENANCE, Attribute::Text(&provenance)),
+        (COUNTS, Attribute::Text(&counts)),
+        (DIGEST, Attribute::Text(BLANK)),
+    ];
+    film.save_exr(path, channels, about, digest::seal)
 }
 
-/// Reads the head of a file.
+/// Reads the head of a file, after all of it has been checked against its digest.
 pub(super) fn about(path: &Path) -> Result<(Provenance, Counts)> {
     // A name that leads to something endless would never be read to its end.
     if std::fs::metadata(path).is_ok_and(|about| !about.is_file()) {
         return Err(Error::read(path, "it is not a file"));
     }
+    let whole = digest::check(path)?;
     let texts = picture::read_texts(path).map_err(|e| Error::read(path, e))?;
     let text = |name: &str| {
         texts.get(name).ok_or_else(|| {
@@ -94,7 +100,14 @@ pub(super) fn about(path: &Path) -> Result<(Provenance, Counts)> {
         })
     };
     let damaged = |e: serde_json::Error| Error::read(path, format!("it is damaged ({e})"));
-    let provenance = serde_json::from_str(text(PROVENANCE)?).map_err(damaged)?;
+    let provenance = text(PROVENANCE)?;
+    if !whole {
+        return Err(Error::read(
+            path,
+            "it has no digest by which damage could be seen: it was written by an older build of this program, which has to finish it, or it is damaged",
+        ));
+    }
+    let provenance = serde_json::from_str(provenance).map_err(damaged)?;
     Ok((provenance, serde_json::from_str(text(COUNTS)?).map_err(damaged)?))
 }
 
@@ -104,6 +117,11 @@ pub(super) fn about(path: &Path) -> Result<(Provenance, Counts)> {
 /// [`Error::Read`] if there is no such file, or it is something else, or damaged; [`Error::Limit`] if the film does not fit into memory.
 pub fn read(path: &Path) -> Result<(Rendered, Provenance)> {
     let (provenance, counts) = about(path)?;
+    Ok((sums(path, &provenance, counts)?, provenance))
+}
+
+/// Reads what is behind the head of a file.
+fn sums(path: &Path, provenance: &Provenance, counts: Counts) -> Result<Rendered> {
     let damaged = |what: &str| Error::read(path, format!("it is damaged: {what}"));
     Film::check_size(provenance.width, provenance.height)?;
     let size = (provenance.width, provenance.height);
@@ -157,7 +175,7 @@ pub fn read(path: &Path) -> Result<(Rendered, Provenance)> {
     let progress = &mut rendered.progress;
     progress.samples = rendered.film.samples.iter().map(|n| u64::from(*n)).sum();
     (progress.rays, progress.shadow_rays, progress.seconds) = (counts.rays, counts.shadow_rays, counts.seconds);
-    Ok((rendered, provenance))
+    Ok(rendered)
 }
 
 /// Reads a file to go on with the render of `scene` from it.
@@ -165,7 +183,7 @@ pub fn read(path: &Path) -> Result<(Rendered, Provenance)> {
 /// # Errors
 /// As [`read`], and [`Error::Read`] if it is of another render, with all differences.
 pub fn resume(path: &Path, scene: &Scene) -> Result<Rendered> {
-    let (there, _) = about(path)?;
+    let (there, counts) = about(path)?;
     let differences = there.differences(&Provenance::of(scene));
     if !differences.is_empty() {
         return Err(Error::read(
@@ -176,5 +194,5 @@ pub fn resume(path: &Path, scene: &Scene) -> Result<Rendered> {
             ),
         ));
     }
-    Ok(read(path)?.0)
+    sums(path, &there, counts)
 }

@@ -3,8 +3,10 @@
 //! The file shows the picture so far (`R`, `G`, `B`, and `error.R`, `error.G`, `error.B`), and beside it, to the last bit, holds what the
 //! film holds: for every independent part `p` of a pixel's samples and every channel `c` the `f64` sum of the radiance, as its two halves
 //! `sum.p.c.high` and `sum.p.c.low`; the number of samples, `samples`; and, if there are any, the number of samples that were not finite,
-//! `dropped.p`. Two texts in the head, both JSON, say what was rendered ([`Provenance`]) and what else was counted.
+//! `dropped.p`. Two texts in the head, both JSON, say what was rendered ([`Provenance`]) and what else was counted. A third is the digest of the whole file: one of
+//! which a single bit has changed is refused.
 
+mod digest;
 mod file;
 mod merge;
 mod provenance;

@@ -49,6 +49,7 @@ impl Provenance {
             integrator,
             settings,
             warnings: _,
+            files: _,
         } = scene;
         let FilmSettings { width, height, filter, filter_radius } = *film;
         let RenderSettings { spp: _, seed, exposure, sampler } = *settings;

@@ -5,7 +5,8 @@ use super::openexr::Exr;
 use super::srgb::to_srgb8;
 use crate::Result;
 use crate::files::write_atomically;
-use image::{ExtendedColorType, ImageEncoder};
+use image::{ExtendedColorType, ImageEncoder, ImageError, ImageResult};
+use std::io::Write;
 use std::path::Path;
 
 /// Writes linear RGB, row by row from the top, to `path` in the format of its ending. `exposure` is in stops and changes a PNG only.
@@ -15,12 +16,7 @@ use std::path::Path;
 pub fn save_linear(path: &Path, width: u32, height: u32, linear: &[f32], exposure: f32) -> Result<()> {
     let format = Format::of(path)?;
     write_atomically(path, |out| match format {
-        Format::Png => image::codecs::png::PngEncoder::new(out).write_image(
-            &to_srgb8(linear, exposure),
-            width,
-            height,
-            ExtendedColorType::Rgb8,
-        ),
+        Format::Png => write_png(out, width, height, &to_srgb8(linear, exposure)),
         Format::Exr => {
             let exr =
                 Exr { width, height, rgb: bytemuck::cast_slice(linear), error: None, more: vec![], attributes: &[] };
@@ -42,8 +38,22 @@ pub fn save_linear(path: &Path, width: u32, height: u32, linear: &[f32], exposur
 pub fn save_png(path: &Path, picture: &image::RgbImage) -> Result<()> {
     write_atomically(path, |out| {
         let (width, height) = picture.dimensions();
-        image::codecs::png::PngEncoder::new(out).write_image(picture, width, height, ExtendedColorType::Rgb8)
+        write_png(out, width, height, picture)
     })
+}
+
+/// 8 bits a channel, with the name of the program that made them, by which it knows its own files again.
+fn write_png(out: &mut dyn Write, width: u32, height: u32, rgb: &[u8]) -> ImageResult<()> {
+    let failed = |e: png::EncodingError| ImageError::IoError(e.into());
+    let mut encoder = png::Encoder::new(out, width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::Fast);
+    encoder.set_filter(png::Filter::Adaptive);
+    encoder.add_text_chunk("Software".into(), "luminaire".into()).map_err(failed)?;
+    let mut writer = encoder.write_header().map_err(failed)?;
+    writer.write_image_data(rgb).map_err(failed)?;
+    writer.finish().map_err(failed)
 }
 
 /// Half a step of RGBE more of everything: the encoder truncates, which would make a picture darker by half a step in the mean (2 % in the

@@ -23,6 +23,7 @@ pub fn empty(width: u32, height: u32) -> Scene {
         integrator: Integrator::Path(Estimator::default()),
         settings: RenderSettings { sampler: Sampler::Independent, ..RenderSettings::default() },
         warnings: vec![],
+        files: vec![],
     }
 }
 

@@ -38,6 +38,9 @@ pub struct Scene {
     pub settings: RenderSettings,
     /// What the loader had to guess, drop or scale; one sentence each, with file and line where there is one.
     pub warnings: Vec<String>,
+    /// Every file that the scene was loaded from or that one of its files names, so that none of them is written to: the scene file, meshes, MTL files, images,
+    /// those that nothing shows or that cannot be used included. A file that is missing is none of them.
+    pub files: Vec<PathBuf>,
 }
 
 impl Scene {

@@ -127,7 +127,8 @@ fn the_unit_of_light_does_not_show() {
                 let errors = film.error_map().expect("samples");
                 let total = errors.total.expect("light");
                 let quiet = rendered(tracer(&scene), &scene, Limits { noise: Some(0.3), ..Limits::default() });
-                let other = Scene { settings: luminaire::scene::RenderSettings { seed: 9, ..scene.settings }, ..scene.clone() };
+                let other =
+                    Scene { settings: luminaire::scene::RenderSettings { seed: 9, ..scene.settings }, ..scene.clone() };
                 let other = rendered(tracer(&other), &other, Limits { spp: Some(64), ..Limits::default() }).film;
                 let picture = |film: &luminaire::Film| luminaire::picture::Picture {
                     width: film.width,
@@ -138,7 +139,8 @@ fn the_unit_of_light_does_not_show() {
                 };
                 let apart = compare(&picture(&film), &picture(&other), 0).expect("one size");
                 let map = errors.relative.iter().map(|e| f64::from(e * e)).sum::<f64>();
-                let counts = [total.fireflies, quiet.film.most_samples().into(), quiet.progress.error.unwrap().fireflies];
+                let counts =
+                    [total.fireflies, quiet.film.most_samples().into(), quiet.progress.error.unwrap().fireflies];
                 (counts, [total.rel_mse, total.rel_mse_with_fireflies, map, apart.relmse, total.rmse / f64::from(unit)])
             };
             let (counts, expected) = numbers(1.0);
@@ -147,7 +149,10 @@ fn the_unit_of_light_does_not_show() {
                 let (found_counts, found) = numbers(unit);
                 assert_eq!(found_counts, counts, "{name} in units of {unit}");
                 for (found, expected) in found.iter().zip(expected) {
-                    assert!((found / expected - 1.0).abs() < slack, "{name} in units of {unit}: {found} for {expected}");
+                    assert!(
+                        (found / expected - 1.0).abs() < slack,
+                        "{name} in units of {unit}: {found} for {expected}"
+                    );
                 }
             }
         });

@@ -72,6 +72,14 @@ enum Command {
 }
 
 fn main() -> ExitCode {
+    luminaire::backend::fit_threads();
+    // Where memory is refused, Rust says so and aborts, as drivers do: that is a failure like others, and no crash.
+    #[cfg(unix)]
+    let _ = signal_hook::flag::register_conditional_shutdown(
+        signal_hook::consts::SIGABRT,
+        1,
+        std::sync::Arc::new(std::sync::atomic::AtomicBool::new(true)),
+    );
     let result = match &Args::parse().command {
         Command::Render(options) => render::run(options),
         Command::Merge(options) => merge::run(options),

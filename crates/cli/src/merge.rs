@@ -1,9 +1,10 @@
 //! `luminaire merge`.
 
 use crate::shared::error_line::{black_picture, error_line};
+use crate::shared::outputs::Outputs;
 use crate::shared::printing::{print, warn};
 use crate::shared::values::stops;
-use luminaire::{Error, Result, files, part, picture};
+use luminaire::{Result, part, picture};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -38,15 +39,12 @@ pub struct Options {
 
 /// Joins parts of a render, and writes the picture.
 pub fn run(options: &Options) -> Result<ExitCode> {
-    for (i, path) in options.output.iter().enumerate() {
-        if options.output[..i].contains(path) {
-            return Err(Error::Usage(format!("-o {} is given twice", path.display())));
-        }
-        if options.parts.iter().any(|part| files::same_file(part, path)) {
-            return Err(Error::Usage(format!("-o {}: that is one of the parts", path.display())));
-        }
-        picture::check_output(path)?;
+    let mut outputs = Outputs::default();
+    for path in &options.output {
+        picture::Format::of(path)?;
+        outputs.add("-o", path)?;
     }
+    outputs.check(options.parts.iter().map(|part| ("one of the parts", &**part)))?;
     let (whole, provenance) = part::merge(&options.parts)?;
     let exposure = options.exposure.unwrap_or(provenance.exposure);
     let mut text = String::new();

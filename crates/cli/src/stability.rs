@@ -1,10 +1,11 @@
 //! `luminaire stability`.
 
+use crate::shared::outputs::Outputs;
 use crate::shared::printing::{self, note, print};
 use crate::shared::relative_path::seen_from;
 use crate::shared::table::table;
 use crate::shared::units::duration;
-use luminaire::files::{check_writable, save_text};
+use luminaire::files::save_text;
 use luminaire::{Error, Result};
 use luminaire_measure::Workbench;
 use luminaire_measure::stability::{Definition, Head, Outcome, SWEEPS, Sweep, named, page};
@@ -62,8 +63,7 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     let folder = options.out.clone().unwrap_or_else(|| FOLDER.into());
     let file = options.page.clone().unwrap_or_else(|| folder.join("README.md"));
     std::fs::create_dir_all(&folder).map_err(|e| Error::write(&folder, format!("the folder cannot be made ({e})")))?;
-    check_writable(&folder.join("check.csv"))?;
-    check_writable(&file)?;
+    check_files(options, &folder, &file, &sweeps)?;
 
     let start = Instant::now();
     let bench = Workbench::new(options.long)?;
@@ -102,6 +102,29 @@ pub fn run(options: &Options) -> Result<ExitCode> {
         return Ok(ExitCode::FAILURE);
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Checks that the files can be written, and that those that nobody has named replace none of somebody else's.
+fn check_files(options: &Options, folder: &Path, page: &Path, sweeps: &[Definition]) -> Result<()> {
+    let mut outputs = Outputs::default();
+    match &options.page {
+        Some(page) => outputs.add("--page", page)?,
+        None => outputs.add_default("--page", page)?,
+    }
+    let default = options.out.is_none().then_some("--out");
+    for sweep in sweeps {
+        let path = folder.join(format!("{}.csv", sweep.name));
+        match default {
+            Some(option) => outputs.add_default(option, &path)?,
+            None => outputs.add("--out", &path)?,
+        }
+    }
+    let is_chart = |name: &str| {
+        let begins = |sweep: &Definition| name.strip_prefix(sweep.name).is_some_and(|rest| rest.starts_with('-'));
+        name.ends_with(".svg") && sweeps.iter().any(begins)
+    };
+    outputs.add_those_in(folder, default, is_chart)?;
+    outputs.check([])
 }
 
 /// Writes the charts of a sweep, and its numbers.

@@ -177,7 +177,7 @@ fn wrong_usage() {
         folder.says(&["image.exr", "reference.exr", option, value], 2, &[option, value]);
     }
     std::fs::copy(folder.path().join("image.exr"), folder.path().join("picture.png")).unwrap();
-    folder.says(&["picture.png", "reference.exr", "--heatmap", "picture.png"], 2, &["would replace"]);
+    folder.says(&["picture.png", "reference.exr", "--heatmap", "picture.png"], 2, &["one of the pictures"]);
     folder.says(&["image.exr", "reference.exr", "--heatmap", "gone/map.png"], 1, &["gone", "does not exist"]);
 }
 

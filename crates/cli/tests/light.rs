@@ -49,7 +49,10 @@ fn a_lost_luminaire_is_said_before_and_after() {
     let Said { out, err, stats } = render(&folder, &["bulb.toml", "--spp", "16"]);
     let sentence = "about 100 % of the light of [[luminaire]] 1 falls on glass or mirrors first";
     assert!(err.contains(&format!("warning: bulb.toml: {sentence}")), "{err}");
-    assert!(err.contains("the picture is black: none of 16 samples a pixel found any light; an earlier warning"), "{err}");
+    assert!(
+        err.contains("the picture is black: none of 16 samples a pixel found any light; an earlier warning"),
+        "{err}"
+    );
     assert!(out.contains("the error cannot be estimated: the picture is black") && !out.contains("0 %"), "{out}");
     assert_eq!((&stats["error"], &stats["black_share"]), (&Value::Null, &1.0.into()));
     assert_eq!(stats["lacks_light"], true);
@@ -80,7 +83,10 @@ fn a_camera_that_looks_away_sees_black() {
     assert!(out.contains("cannot be estimated"), "{out}");
     // There is nothing that a limit of the noise could wait for.
     let Said { out, stats, .. } = render(&folder, &["away.toml", "--noise", "0.1", "--error-map", "e.png"]);
-    assert!(out.contains("ended by --noise without an estimate") && out.contains("--noise 0.1 was not reached"), "{out}");
+    assert!(
+        out.contains("ended by --noise without an estimate") && out.contains("--noise 0.1 was not reached"),
+        "{out}"
+    );
     assert_eq!((&stats["end"], &stats["spp_most"]), (&"no-estimate".into(), &1024.into()));
 }
 
@@ -93,7 +99,11 @@ fn no_noise_and_too_few_samples_are_said_as_such() {
     let one = render(&folder, &["open.toml", "--spp", "1"]);
     assert!(one.out.contains("the error cannot be estimated: one sample a pixel tells nothing of it"), "{}", one.out);
     let three = render(&folder, &["open.toml", "--spp", "3"]);
-    assert!(three.out.contains("estimated error") && three.out.contains("uncertain, from 3 samples a pixel"), "{}", three.out);
+    assert!(
+        three.out.contains("estimated error") && three.out.contains("uncertain, from 3 samples a pixel"),
+        "{}",
+        three.out
+    );
 }
 
 #[test]
@@ -102,7 +112,11 @@ fn a_png_that_shows_nothing_is_said() {
     let dim = std::fs::read_to_string(folder.path().join("s.mtl")).unwrap().replace("Ke 1 1 1", "Ke 1e-6 1e-6 1e-6");
     folder.write("s.mtl", &dim);
     let said = render(&folder, &["flat.toml", "--spp", "4"]);
-    assert!(said.err.contains("warning: a PNG shows nothing of this picture") && said.err.contains("--exposure 17"), "{}", said.err);
+    assert!(
+        said.err.contains("warning: a PNG shows nothing of this picture") && said.err.contains("--exposure 17"),
+        "{}",
+        said.err
+    );
     assert!(!render(&folder, &["flat.toml", "--spp", "4", "--exposure", "17"]).err.contains("warning"));
 }
 

@@ -129,8 +129,8 @@ fn options_of_the_error_that_mean_nothing() {
         folder.fails(&[&["render", "good.obj", "--backend", "cpu"], words].concat(), 2, &[part]);
     };
     fails(&["--error-map", "map.exr"], ".png");
-    fails(&["-o", "a.png", "--error-map", "a.png"], "the picture itself");
-    fails(&["--error-map", "good.png"], "the picture itself");
+    fails(&["-o", "a.png", "--error-map", "a.png"], "twice");
+    fails(&["--error-map", "good.png"], "twice");
     fails(&["--spp", "1", "--error-map", "e.png"], "--spp 2");
     fails(&["--width", "16", "--pixel", "16,0", "--sample", "1"], "not on the film");
     fails(&["--pixel", "1,1", "--sample", "1", "--spp", "4"], "cannot be used with");

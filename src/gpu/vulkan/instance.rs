@@ -23,7 +23,7 @@ impl Instance {
     /// synchronization included.
     ///
     /// # Errors
-    /// [`Error::NoDevice`] if there is no loader or no driver, with what to install.
+    /// [`Error::NoDevice`] if there is no loader or no driver, with what to install; or if a limit of the process leaves a driver too little address space.
     pub fn new() -> Result<Arc<Self>> {
         Self::with_extensions(&[])
     }
@@ -33,6 +33,7 @@ impl Instance {
     /// # Errors
     /// As for [`Instance::new`], and if it does not know one of them.
     pub fn with_extensions(wanted: &[&'static CStr]) -> Result<Arc<Self>> {
+        crate::memory::check_driver()?;
         // SAFETY: the loader found by the system's rules is trusted to be a Vulkan loader.
         let entry = unsafe { ash::Entry::load() }.map_err(|e| {
             Error::NoDevice(format!(

@@ -5,7 +5,10 @@ use ::exr::image::write::WritableImage;
 use ::exr::prelude::{
     AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, Layer, LayerAttributes, Text,
 };
-use std::io::Cursor;
+use std::io::{BufWriter, Cursor, Read, Seek, Write};
+
+/// The head of a file is shorter.
+const MOST_HEAD: u64 = 1 << 20;
 
 /// A picture to write.
 #[derive(Debug, Clone)]
@@ -39,6 +42,16 @@ impl Exr<'_> {
     /// # Errors
     /// In the encoder's words, for example if there are no pixels, or not `width * height` of them.
     pub fn encode(self) -> Result<Vec<u8>, String> {
+        let mut bytes = Cursor::new(Vec::new());
+        self.write(&mut bytes)?;
+        Ok(bytes.into_inner())
+    }
+
+    /// Writes the same bytes to where nothing is yet, for pictures that memory should not hold a second time.
+    ///
+    /// # Errors
+    /// As for [`Exr::encode`], and if `out` fails.
+    pub(crate) fn write(self, out: &mut (impl Read + Write + Seek)) -> Result<(), String> {
         let pixels = self.width as usize * self.height as usize;
         if self.rgb.len() != pixels || self.error.is_some_and(|error| error.len() != pixels) {
             return Err(format!("there are not {} x {} pixels", self.width, self.height));
@@ -65,11 +78,11 @@ impl Exr<'_> {
         about.other = self.attributes.iter().map(|(name, value)| (text(name), value.stored())).collect();
         let size = (self.width as usize, self.height as usize);
         let layer = Layer::new(size, about, Encoding::SMALL_LOSSLESS, AnyChannels::sort(channels.into()));
-        let mut bytes = Cursor::new(Vec::new());
-        Image::from_layer(layer).write().to_buffered(&mut bytes).map_err(|e| e.to_string())?;
-        let mut bytes = bytes.into_inner();
-        sort_attributes(&mut bytes);
-        Ok(bytes)
+        let mut buffered = BufWriter::with_capacity(1 << 20, &mut *out);
+        Image::from_layer(layer).write().to_buffered(&mut buffered).map_err(|e| e.to_string())?;
+        buffered.flush().map_err(|e| e.to_string())?;
+        drop(buffered);
+        sort_head(out).map_err(|e| e.to_string())
     }
 }
 
@@ -85,6 +98,16 @@ impl Attribute<'_> {
 fn text(value: &str) -> Text {
     let latin: String = value.chars().map(|c| if u32::from(c) < 256 { c } else { '?' }).collect();
     Text::new_or_none(latin).unwrap_or_default()
+}
+
+/// Sorts the attributes of a file that was just written.
+fn sort_head(out: &mut (impl Read + Write + Seek)) -> std::io::Result<()> {
+    let mut head = Vec::new();
+    out.rewind()?;
+    out.take(MOST_HEAD).read_to_end(&mut head)?;
+    sort_attributes(&mut head);
+    out.rewind()?;
+    out.write_all(&head)
 }
 
 /// Puts the attributes in the head of a file with one part in alphabetic order. The encoder takes them from a hash table, and two files of one

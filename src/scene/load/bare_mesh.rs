@@ -51,6 +51,7 @@ pub(super) fn load(path: &Path) -> Result<Scene> {
         film: FILM,
         integrator: Integrator::Path(Estimator::default()),
         settings: RenderSettings::default(),
+        files: loader.files,
         warnings: loader.warnings,
     };
     scene.sensor = framing_sensor(&scene);

@@ -122,14 +122,8 @@ impl Glass {
             let index = scene.materials[material as usize].eta.map_or(0.0, |eta| f64::from(eta).ln());
             faces.push(Face { corners, material, index, surface: 0 });
         }
-        let mut glass = Glass {
-            places: Vec::new(),
-            faces,
-            open: Vec::new(),
-            wrong: Vec::new(),
-            doubled: 0,
-            unsure: Vec::new(),
-        };
+        let mut glass =
+            Glass { places: Vec::new(), faces, open: Vec::new(), wrong: Vec::new(), doubled: 0, unsure: Vec::new() };
         glass.find_edges(mesh, &mut welded, |material| !bends[material_of(material) as usize]);
         glass.places = welded.places;
         let mut seen = HashSet::new();
@@ -153,9 +147,14 @@ impl Glass {
         let mut parents: Vec<u32> = (0..self.faces.len() as u32).collect();
         let mut faulty = Vec::new();
         for edge in edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
-            let around: f64 = edge.iter().map(|&(.., ahead, face)| {
-                if ahead { self.faces[face as usize].index } else { -self.faces[face as usize].index }
-            }).sum();
+            let around: f64 = edge
+                .iter()
+                .map(
+                    |&(.., ahead, face)| {
+                        if ahead { self.faces[face as usize].index } else { -self.faces[face as usize].index }
+                    },
+                )
+                .sum();
             if around.abs() > SAME_INDEX {
                 faulty.push((edge[0].0, edge[0].1, edge.len(), edge[0].3));
             }
@@ -206,7 +205,11 @@ impl Glass {
             _ => parts.push(format!("{number} {many}")),
         };
         count(self.open.len(), "open edge", "open edges");
-        count(self.wrong.len(), "edge between faces that are wound against each other", "edges between faces that are wound against each other");
+        count(
+            self.wrong.len(),
+            "edge between faces that are wound against each other",
+            "edges between faces that are wound against each other",
+        );
         count(self.doubled, "face that lies on another", "faces that lie on others");
         let faulty: HashSet<u32> = self.open.iter().chain(&self.wrong).map(|(_, surface)| *surface).collect();
         if parts.is_empty() && sheets.is_empty() {
@@ -226,8 +229,12 @@ impl Glass {
         let only_sheets = flat && faulty.len() == sheets.len() && self.doubled == 0;
         let advice = match (flat, only_sheets) {
             (true, true) => "if it is a pane, state `thin = true` in its [[material]]; else close it",
-            (true, false) => "close it and turn all faces outwards, once each; flat panes want `thin = true` in their [[material]]",
-            (false, _) => "close it and turn all faces outwards, once each (thin sheets want `thin = true` in their [[material]])",
+            (true, false) => {
+                "close it and turn all faces outwards, once each; flat panes want `thin = true` in their [[material]]"
+            }
+            (false, _) => {
+                "close it and turn all faces outwards, once each (thin sheets want `thin = true` in their [[material]])"
+            }
         };
         Some(format!(
             "{who}: the glass of material {materials} is not a closed body ({}{place}): light that passes is too bright or too dark by the \
@@ -265,12 +272,15 @@ impl Glass {
         // Doubled faces cancel but for rounding.
         let sheets = self.sheets();
         let doubled = self.doubled > 0;
-        (0..volumes.len() as u32).filter(move |surface| {
-            let surface = *surface as usize;
-            !doubled && usual[surface] && volumes[surface] < 0.0 && !sheets.contains(&(surface as u32))
-        }).take(MOST_HOLLOWS).map(|surface| Body {
-            faces: (0..self.faces.len()).filter(|face| self.faces[*face].surface == surface).collect(),
-        })
+        (0..volumes.len() as u32)
+            .filter(move |surface| {
+                let surface = *surface as usize;
+                !doubled && usual[surface] && volumes[surface] < 0.0 && !sheets.contains(&(surface as u32))
+            })
+            .take(MOST_HOLLOWS)
+            .map(|surface| Body {
+                faces: (0..self.faces.len()).filter(|face| self.faces[*face].surface == surface).collect(),
+            })
     }
 
     fn corners(&self, face: &Face) -> [DVec3; 3] {
@@ -312,7 +322,8 @@ fn is_hollow(scene: &Scene, glasses: &[(&Vec<usize>, Glass)], glass: &Glass, obj
         }
         let in_world = widen(object.object_to_world).transform_point3(point);
         for (objects, other) in glasses {
-            let others = objects.iter().map(|index| &scene.objects[*index]).filter(|other| !std::ptr::eq(*other, object));
+            let others =
+                objects.iter().map(|index| &scene.objects[*index]).filter(|other| !std::ptr::eq(*other, object));
             let (low, high) = scene.meshes[scene.objects[objects[0]].mesh as usize].bounds();
             for place in others {
                 let to_object: DAffine3 = widen(place.object_to_world).inverse();

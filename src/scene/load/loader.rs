@@ -17,6 +17,8 @@ pub(super) struct Loader {
     pub meshes: Vec<Arc<Mesh>>,
     /// What was guessed, dropped or scaled.
     pub warnings: Vec<String>,
+    /// Every file that was read or that a file names and that is there.
+    pub files: Vec<PathBuf>,
     /// Materials as far as they are known; number 0 is the fallback, "default".
     drafts: Vec<Draft>,
     /// What the scene file says about materials, by name.
@@ -46,6 +48,7 @@ impl Loader {
         Loader {
             meshes: Vec::new(),
             warnings: Vec::new(),
+            files: overrides.iter().flat_map(Draft::map_files).collect(),
             drafts: vec![Draft::named("default")],
             overrides,
             defined: HashMap::new(),
@@ -66,6 +69,7 @@ impl Loader {
             return Ok(*mesh);
         }
         let obj::Obj { mut mesh, materials, libraries, without_uv, warnings } = obj::read(path, smooth)?;
+        self.files.push(path.to_owned());
         // The same file with another `smooth` has the same faults.
         let first = !self.mesh_files.keys().any(|(file, _)| *file == identity.0);
         self.warnings.extend(warnings.into_iter().filter(|warning| first || warning.contains("`smooth`")));
@@ -233,6 +237,10 @@ impl Loader {
         let identity = identity(path);
         if let Some(materials) = self.libraries.get(&identity) {
             return Ok(materials.clone());
+        }
+        if path.is_file() {
+            self.files.push(path.to_owned());
+            self.files.extend(mtl::named_files(path));
         }
         let mut materials = HashMap::new();
         for draft in mtl::read(path, &mut self.warnings)? {

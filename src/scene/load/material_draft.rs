@@ -4,6 +4,7 @@ use super::texture::{Channel, MapFile, Textures};
 use crate::scene::{Maps, Material};
 use glam::Vec3;
 use std::ops::RangeInclusive;
+use std::path::PathBuf;
 
 /// The exponent of a glossy material that states none.
 pub(super) const DEFAULT_EXPONENT: f32 = 10.0;
@@ -98,6 +99,13 @@ impl Draft {
     /// A material of which nothing but the name is known.
     pub(super) fn named(name: &str) -> Self {
         Draft { name: name.to_owned(), ..Draft::default() }
+    }
+
+    /// The files of its maps that are there.
+    pub(super) fn map_files(&self) -> Vec<PathBuf> {
+        let DraftMaps { ambient, diffuse, glossy, emission, opacity } = &self.maps;
+        let maps = [ambient, diffuse, glossy, emission, opacity].into_iter().filter_map(MapDraft::file);
+        maps.filter_map(MapFile::path).collect()
     }
 
     /// Replaces what `other` states.

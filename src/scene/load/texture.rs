@@ -94,6 +94,11 @@ impl MapFile {
             || file(self).is_some_and(|path| Some(path) == file(other))
     }
 
+    /// The file, if there is one.
+    pub(super) fn path(&self) -> Option<PathBuf> {
+        Some(self.find().ok()?.0)
+    }
+
     /// The file, and a warning if it is not quite the one that is named.
     fn find(&self) -> Result<(PathBuf, Option<String>), String> {
         let written = &self.names[0];

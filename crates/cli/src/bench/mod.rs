@@ -7,16 +7,17 @@ pub use self::options::Options;
 
 use crate::shared::backend_name::BackendName;
 use crate::shared::interrupts;
+use crate::shared::outputs::Outputs;
 use crate::shared::printing::{self, Notes, note, print, warn};
 use crate::shared::relative_path::seen_from;
 use crate::shared::units::duration;
-use luminaire::files::{check_writable, save_text};
+use luminaire::files::save_text;
 use luminaire::picture;
 use luminaire::{Error, Result};
 use luminaire_measure::Workbench;
 use luminaire_measure::bench::{
-    Baseline, BenchScene, Definition, Effort, Machine, Outcome, Report, STANDARD, Settings, file_name, html, markdown,
-    named,
+    Baseline, BenchScene, Definition, Effort, Machine, Outcome, Report, SECTIONS, STANDARD, Settings, file_name, html,
+    markdown, named,
 };
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -36,18 +37,9 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     let sections = named(&options.sections)?;
     let folder = options.out.clone().unwrap_or_else(|| FOLDER.into());
     let baseline = options.baseline.as_deref().map(Baseline::read).transpose()?;
-    let same =
-        |path: &Path| path.canonicalize().is_ok_and(|p| folder.join("bench.json").canonicalize().is_ok_and(|q| p == q));
-    if options.baseline.as_deref().is_some_and(same) {
-        return Err(Error::Usage(format!(
-            "--baseline is the file that this run would write into {}: give another folder by --out, or copy the file elsewhere first",
-            folder.display()
-        )));
-    }
     let mut settings = settings(options, &sections)?;
     std::fs::create_dir_all(&folder).map_err(|e| Error::write(&folder, format!("the folder cannot be made ({e})")))?;
-    check_writable(&folder.join("index.html"))?;
-    options.page.as_deref().map(check_writable).transpose()?;
+    check_files(options, &folder, &settings)?;
     interrupts::listen(Notes { quiet: false })?;
 
     let start = Instant::now();
@@ -96,6 +88,32 @@ pub fn run(options: &Options) -> Result<ExitCode> {
         }
     }
     Ok(if failed + worse > 0 { ExitCode::FAILURE } else { ExitCode::SUCCESS })
+}
+
+/// Checks that the files can be written, and that none of them is one that the run reads or, in the folder of no choice, one of somebody else's.
+fn check_files(options: &Options, folder: &Path, settings: &Settings) -> Result<()> {
+    let mut outputs = Outputs::default();
+    let default = options.out.is_none().then_some("--out");
+    for name in ["index.html", "figures.csv", "points.csv", "bench.json"] {
+        let path = folder.join(name);
+        match default {
+            Some(option) => outputs.add_default(option, &path)?,
+            None => outputs.add("--out", &path)?,
+        }
+    }
+    if let Some(page) = &options.page {
+        outputs.add("--page", page)?;
+    }
+    let is_chart = |name: &str| {
+        let begins = |section: &Definition| name.strip_prefix(section.name).is_some_and(|rest| rest.starts_with('-'));
+        name.ends_with(".svg") && SECTIONS.iter().any(begins)
+    };
+    outputs.add_those_in(folder, default, is_chart)?;
+    let scenes = settings.scenes.iter().flat_map(|scene| &scene.scene.files);
+    let inputs = scenes.map(|path| ("a file of a scene", &**path));
+    let baseline = options.baseline.iter().map(|path| ("the --baseline", &**path));
+    let reference = options.reference.iter().map(|path| ("the --reference", &**path));
+    outputs.check(inputs.chain(baseline).chain(reference))
 }
 
 /// What the options ask to measure, with the scenes loaded. The backends are left empty: they are known only when the devices are open.

@@ -5,6 +5,7 @@ mod tables;
 
 use self::flip::Flip;
 use self::tables::{Source, describe, number};
+use crate::shared::outputs::Outputs;
 use crate::shared::printing::{self, print, warn};
 use crate::shared::values::{limit, stops};
 use luminaire::files;
@@ -71,8 +72,10 @@ pub struct Options {
 
 /// Reads, compares, writes and judges.
 pub fn run(options: &Options) -> Result<ExitCode> {
-    check_output(options, "--heatmap", options.heatmap.as_deref(), "png")?;
-    check_output(options, "--stats", options.stats.as_deref(), "json")?;
+    let mut outputs = Outputs::default();
+    declare(&mut outputs, "--heatmap", options.heatmap.as_deref(), "png")?;
+    declare(&mut outputs, "--stats", options.stats.as_deref(), "json")?;
+    outputs.check([("one of the pictures", &*options.image), ("one of the pictures", &*options.reference)])?;
     let image = picture::read(&options.image)?;
     let reference = picture::read(&options.reference)?;
     for (path, picture) in [(&options.image, &image), (&options.reference, &reference)] {
@@ -182,14 +185,11 @@ fn non_finite(odd: NonFinite) -> String {
     }
 }
 
-/// Refuses a file that cannot be written, has another ending, or is one of the pictures.
-fn check_output(options: &Options, option: &str, path: Option<&Path>, ending: &str) -> Result<()> {
+/// Declares a file to write. A usage error if it has another ending.
+fn declare(outputs: &mut Outputs, option: &str, path: Option<&Path>, ending: &str) -> Result<()> {
     let Some(path) = path else { return Ok(()) };
     if path.extension().is_none_or(|found| !found.eq_ignore_ascii_case(ending)) {
         return Err(Error::Usage(format!("{option} {}: the name must end in .{ending}", path.display())));
     }
-    if path == options.image || path == options.reference {
-        return Err(Error::Usage(format!("{option} {} would replace one of the pictures", path.display())));
-    }
-    files::check_writable(path)
+    outputs.add(option, path)
 }

@@ -4,22 +4,27 @@ mod integrator;
 mod tables;
 
 use self::tables::{luminaires, materials, meshes, objects, rgb, textures};
+use crate::shared::film_size::FilmSize;
 use crate::shared::printing::print;
 use crate::shared::table::table;
 use luminaire::Result;
+use luminaire::film::Demand;
 use luminaire::gpu::specialization::KernelModel;
 use luminaire::reference::lost_light::lost_light;
-use luminaire::scene::{self, Environment, Mesh, Projection, Scene};
+use luminaire::scene::{self, Environment, FilmSettings, Mesh, Projection, Scene};
 use std::path::PathBuf;
 use std::process::ExitCode;
+
+/// The largest side of a film in pixels.
+const LARGEST_SIDE: u32 = 65536;
 
 /// What follows the options in `--help`.
 const HELP: &str = "\
 Examples:
   luminaire inspect scenes/textures/textures.toml
       objects, materials, textures and luminaires, what the kernel will model, the memory that this takes, and every warning
-  luminaire inspect model.obj
-      the camera and the light that were found for it, too
+  luminaire inspect model.obj --width 3840
+      the camera and the light that were found for it, too, and what a picture of this size takes of memory and disk
 
 Exit codes:
   0  the scene can be loaded, with or without warnings
@@ -32,6 +37,12 @@ Exit codes:
 pub struct Options {
     /// A scene file (.toml) or any OBJ file.
     scene: PathBuf,
+    /// Width in pixels of the picture whose memory is told [default: the scene's, or from --height at the scene's aspect ratio].
+    #[arg(long, value_name = "PIXELS", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=i64::from(LARGEST_SIDE)))]
+    width: Option<u32>,
+    /// Height in pixels [default: the scene's, or from --width at the scene's aspect ratio].
+    #[arg(long, value_name = "PIXELS", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=i64::from(LARGEST_SIDE)))]
+    height: Option<u32>,
 }
 
 /// Loads a scene and prints what is in it.
@@ -39,6 +50,7 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     let mut scene = scene::load(&options.scene)?;
     let lost = lost_light(&scene);
     scene.warnings.extend(lost);
+    FilmSize { width: options.width, height: options.height, largest: LARGEST_SIDE }.apply(&mut scene.film);
     print(&describe(&scene))?;
     Ok(ExitCode::SUCCESS)
 }
@@ -85,6 +97,7 @@ fn describe(scene: &Scene) -> String {
             ),
             row("kernel", KernelModel::of(scene).to_string()),
             row("memory", memory(scene)),
+            row("film takes", film_memory(scene)),
         ],
     );
     text += &format!("\nmeshes\n{}", table(2, &meshes(scene)));
@@ -159,16 +172,30 @@ fn memory(scene: &Scene) -> String {
     };
     let geometry: usize = scene.meshes.iter().map(|m| mesh(m)).sum();
     let images: usize = scene.textures.iter().map(|texture| size_of_val(&texture.texels[..])).sum();
-    let film = u64::from(scene.film.width) * u64::from(scene.film.height) * 28;
     let size = |bytes: f64| match bytes {
         b if b < f64::from(1 << 20) => format!("{:.1} KiB", b / f64::from(1 << 10)),
-        b => format!("{:.1} MiB", b / f64::from(1 << 20)),
+        b if b < f64::from(1 << 30) => format!("{:.1} MiB", b / f64::from(1 << 20)),
+        b => format!("{:.2} GiB", b / f64::from(1 << 30)),
     };
     let images = if images > 0 { format!(", {} of textures", size(images as f64)) } else { String::new() };
+    format!("{} of geometry{images}, besides about 100 bytes a stored triangle for the BVH", size(geometry as f64))
+}
+
+/// What rendering takes at most beside the scene, and what it writes.
+fn film_memory(scene: &Scene) -> String {
+    let FilmSettings { width, height, .. } = scene.film;
+    let plain = Demand { width, height, ..Demand::default() };
+    let size = |bytes: u64| {
+        let mib = bytes as f64 / f64::from(1 << 20);
+        if mib < 1024.0 { format!("{mib:.1} MiB") } else { format!("{:.2} GiB", mib / 1024.0) }
+    };
+    let with = Demand { sums: true, ..plain };
     format!(
-        "{} of geometry{images} and {} of film, besides about 100 bytes a stored triangle for the BVH",
-        size(geometry as f64),
-        size(film as f64)
+        "{} for a picture, {} with layers (--aov), {} with --checkpoint or --samples, whose file takes up to {}",
+        size(plain.bytes()),
+        size(Demand { aovs: true, exr: true, ..plain }.bytes()),
+        size(with.bytes()),
+        size(with.file_bytes())
     )
 }
 
@@ -177,8 +204,8 @@ mod tests {
     use super::*;
     use luminaire::glam::Vec3;
     use luminaire::scene::{
-        Estimator, FilmSettings, Filter, Integrator, Lens, Luminaire, Maps, Material, Object, RenderSettings, Sensor,
-        Texture, Triangle,
+        Estimator, Filter, Integrator, Lens, Luminaire, Maps, Material, Object, RenderSettings, Sensor, Texture,
+        Triangle,
     };
 
     #[test]
@@ -235,6 +262,7 @@ mod tests {
             integrator: Integrator::Path(estimator),
             settings: RenderSettings::default(),
             warnings: vec!["one.obj:3: something odd".into()],
+            files: vec![],
         };
         let text = describe(&scene);
         for part in [

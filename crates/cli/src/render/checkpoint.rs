@@ -2,11 +2,13 @@
 
 use super::options::Options;
 use super::outputs::is_exr;
+use crate::shared::outputs::Outputs;
 use crate::shared::printing::Notes;
+use luminaire::files::{self, Lock};
 use luminaire::part::{self, Provenance};
 use luminaire::render::Rendered;
 use luminaire::scene::Scene;
-use luminaire::{Error, Result, files};
+use luminaire::{Error, Result};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -58,22 +60,41 @@ fn pictures(options: &Options) -> Vec<&Path> {
     paths.collect()
 }
 
-/// Checks the options that concern checkpoints, before anything is loaded.
-pub fn check(options: &Options) -> Result<()> {
+/// Declares the checkpoint as a file to write. A usage error if it is of a wrong kind, or one of the others.
+pub fn declare(options: &Options, outputs: &mut Outputs) -> Result<()> {
     let Some(path) = &options.checkpoint else { return Ok(()) };
     if !is_exr(path) {
         return Err(Error::Usage(format!("--checkpoint {}: the name must end in .exr", path.display())));
     }
-    if pictures(options).iter().any(|output| files::same_file(output, path)) {
-        return Err(Error::Usage(format!("--checkpoint {}: the picture itself is written there", path.display())));
+    outputs.add("--checkpoint", path)
+}
+
+/// Takes the locks of the files that no other job may write at the same time: the checkpoint, and parts. They are held until they are dropped.
+pub fn lock(options: &Options, notes: Notes) -> Result<Vec<Lock>> {
+    let parts = options.output.iter().filter(|path| options.samples.is_some() && is_exr(path));
+    let mut locks = Vec::new();
+    for path in parts.chain(&options.checkpoint) {
+        match Lock::of(path)? {
+            Some(lock) => locks.push(lock),
+            None => notes.warn(format_args!(
+                "{}: its file system has no locks; see to it yourself that no other job writes it",
+                path.display()
+            )),
+        }
     }
+    Ok(locks)
+}
+
+/// Refuses to begin anew where there is a checkpoint. Only after [`lock`]: another job may just have written it.
+pub fn check(options: &Options) -> Result<()> {
+    let Some(path) = &options.checkpoint else { return Ok(()) };
     if exists(path)? && !options.resume {
         return Err(Error::Usage(format!(
             "--checkpoint {}: there is a file already: go on from it with --resume, or remove it to start anew",
             path.display()
         )));
     }
-    files::check_writable(path)
+    Ok(())
 }
 
 /// What the render begins with: what the checkpoint holds, or nothing.

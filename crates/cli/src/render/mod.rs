@@ -25,10 +25,10 @@ use self::seconds::Seconds;
 use crate::shared::backend_name;
 use crate::shared::film_size::FilmSize;
 use crate::shared::interrupts;
+use crate::shared::outputs::Outputs;
 use crate::shared::printing::Notes;
 use crate::shared::values::Pixel;
 use luminaire::backend::{self, Renderer, Request};
-use luminaire::film::Film;
 use luminaire::reference::lost_light::lost_light;
 use luminaire::render::{End, Limits, Rendered, aovs, resume};
 use luminaire::scene::{self, FilmSettings, Scene};
@@ -42,12 +42,16 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     let notes = Notes { quiet: options.quiet };
     let request = backend_name::request(options.backend, options.device.as_deref())?;
     outputs::check_layers(options)?;
-    checkpoint::check(options)?;
     options.estimator.check()?;
+    let mut outputs = Outputs::default();
     let mut pictures = vec![];
+    let mut locks = vec![];
     if options.pixel.is_none() {
-        pictures = outputs::pictures(options)?;
-        outputs::check_others(options, &pictures)?;
+        pictures = outputs::pictures(options, &mut outputs)?;
+        outputs::declare_others(options, &mut outputs)?;
+        checkpoint::declare(options, &mut outputs)?;
+        locks = checkpoint::lock(options, notes)?;
+        checkpoint::check(options)?;
     }
     interrupts::listen(notes)?;
 
@@ -55,6 +59,7 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     let start = Instant::now();
     let mut scene = scene::load(&options.scene)?;
     seconds.load = start.elapsed().as_secs_f64();
+    outputs.check(scene.files.iter().map(|path| ("a file of the scene", &**path)))?;
     change(&mut scene, options)?;
     let lost = lost_light(&scene);
     let lacks_light = !lost.is_empty();
@@ -66,7 +71,9 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     if options.watch {
         return watch::repeat(&interrupts::STOP, &render);
     }
-    render()
+    let code = render();
+    drop(locks);
+    code
 }
 
 /// Puts the options in the place of what the scene says. A usage error if they do not fit it.
@@ -76,7 +83,7 @@ fn change(scene: &mut Scene, options: &Options) -> Result<()> {
     scene.settings.seed = options.seed.unwrap_or(scene.settings.seed);
     scene.settings.exposure = options.exposure.unwrap_or(scene.settings.exposure);
     let FilmSettings { width, height, .. } = scene.film;
-    Film::check_size(width, height)?;
+    outputs::demand(options, &scene.film).check()?;
     match options.pixel {
         Some(Pixel { x, y }) if x >= width || y >= height => {
             Err(Error::Usage(format!("--pixel {x},{y} is not on the film, which has {width} x {height} pixels")))
@@ -142,7 +149,17 @@ fn trace(
     }
     seconds.render = rendered.progress.seconds;
     seconds.device = rendered.device_seconds;
-    let outcome = Outcome { options, scene, renderer: &renderer, rendered, aovs: layers, saved, lacks_light, warnings: vec![], seconds };
+    let outcome = Outcome {
+        options,
+        scene,
+        renderer: &renderer,
+        rendered,
+        aovs: layers,
+        saved,
+        lacks_light,
+        warnings: vec![],
+        seconds,
+    };
     ending::finish(outcome, pictures, notes)
 }
 

@@ -3,6 +3,8 @@
 use super::options::Options;
 use super::outcome::Outcome;
 use super::stats::Stats;
+use crate::shared::outputs::Outputs;
+use luminaire::film::Demand;
 use luminaire::part::Provenance;
 use luminaire::scene::FilmSettings;
 use luminaire::{Error, Result, files, part, picture};
@@ -28,37 +30,30 @@ pub fn check_layers(options: &Options) -> Result<()> {
     Ok(())
 }
 
-/// The pictures to write. A usage error if one of them is named twice or cannot be written.
-pub fn pictures(options: &Options) -> Result<Vec<PathBuf>> {
-    let mut pictures = options.output.clone();
-    if pictures.is_empty() {
-        let stem = options.scene.file_stem().ok_or_else(|| Error::read(&options.scene, "it is not a file"))?;
-        let mut name = stem.to_owned();
-        name.push(".png");
-        pictures.push(name.into());
+/// The pictures to write, declared. A usage error if one of them is named twice.
+pub fn pictures(options: &Options, outputs: &mut Outputs) -> Result<Vec<PathBuf>> {
+    for path in &options.output {
+        picture::Format::of(path)?;
+        outputs.add("-o", path)?;
     }
-    for (i, path) in pictures.iter().enumerate() {
-        if pictures[..i].contains(path) {
-            return Err(Error::Usage(format!("-o {} is given twice", path.display())));
-        }
-        picture::check_output(path)?;
+    if !options.output.is_empty() {
+        return Ok(options.output.clone());
     }
-    Ok(pictures)
+    let stem = options.scene.file_stem().ok_or_else(|| Error::read(&options.scene, "it is not a file"))?;
+    let mut name = stem.to_owned();
+    name.push(".png");
+    outputs.add_default("-o", name.as_ref())?;
+    Ok(vec![name.into()])
 }
 
-/// Refuses the other files where they cannot be written, or are one of the pictures.
-pub fn check_others(options: &Options, pictures: &[PathBuf]) -> Result<()> {
+/// Declares the other files. A usage error where one is of a wrong kind or named already.
+pub fn declare_others(options: &Options, outputs: &mut Outputs) -> Result<()> {
     #[cfg(feature = "denoise")]
     if let Some(path) = &options.denoised {
-        if pictures.contains(path) {
-            return Err(Error::Usage(format!("--denoised {}: the picture itself is written there", path.display())));
-        }
-        picture::check_output(path)?;
+        picture::Format::of(path)?;
+        outputs.add("--denoised", path)?;
     }
     if let Some(path) = &options.error_map {
-        if pictures.contains(path) {
-            return Err(Error::Usage(format!("--error-map {}: the picture itself is written there", path.display())));
-        }
         if options.spp == Some(1) {
             return Err(Error::Usage(
                 "--error-map wants at least --spp 2: one sample tells nothing of its error".into(),
@@ -67,15 +62,28 @@ pub fn check_others(options: &Options, pictures: &[PathBuf]) -> Result<()> {
         if picture::Format::of(path)? != picture::Format::Png {
             return Err(Error::Usage(format!("--error-map {}: the name must end in .png", path.display())));
         }
-        files::check_writable(path)?;
+        outputs.add("--error-map", path)?;
     }
     if let Some(path) = &options.stats {
         if path.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("json")) {
             return Err(Error::Usage(format!("--stats {}: the name must end in .json", path.display())));
         }
-        files::check_writable(path)?;
+        outputs.add("--stats", path)?;
     }
     Ok(())
+}
+
+/// What the film and its files take of this machine's memory.
+pub fn demand(options: &Options, film: &FilmSettings) -> Demand {
+    let exr = options.output.iter().any(|path| is_exr(path));
+    Demand {
+        width: film.width,
+        height: film.height,
+        sums: options.checkpoint.is_some() || options.samples.is_some(),
+        exr,
+        aovs: options.wants_aovs(),
+        errors: options.error_map.is_some(),
+    }
 }
 
 /// Writes the pictures, and then the figures of `--stats`.
@@ -126,6 +134,6 @@ mod tests {
         let command = Options::augment_args(clap::Command::new("render"));
         let matches = command.try_get_matches_from(["render", "a/b.scene.toml"]).unwrap();
         let options = Options::from_arg_matches(&matches).unwrap();
-        assert_eq!(pictures(&options).unwrap(), [PathBuf::from("b.scene.png")]);
+        assert_eq!(pictures(&options, &mut Outputs::default()).unwrap(), [PathBuf::from("b.scene.png")]);
     }
 }

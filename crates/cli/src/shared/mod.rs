@@ -6,6 +6,7 @@ pub mod estimator;
 pub mod exit_codes;
 pub mod film_size;
 pub mod interrupts;
+pub mod outputs;
 pub mod printing;
 pub mod relative_path;
 pub mod table;

@@ -3,6 +3,9 @@
 //! The geometry is worth more than a bad number in its materials, so whatever is wrong in an MTL file is a warning with its line.
 
 mod map_options;
+mod named_files;
+
+pub(super) use named_files::named_files;
 
 use super::material_draft::{DEFAULT_ETA, Draft, ETAS, LARGEST_EXPONENT, MapDraft};
 use super::text_file::{Tally, read_text, shortened};

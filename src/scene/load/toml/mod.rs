@@ -39,6 +39,10 @@ impl File<'_> {
         }
         let sensor = file.sensor.map(|table| self.sensor(&table)).transpose()?;
         let mut loader = Loader::new(self.materials(&file.material)?);
+        loader.files.push(self.path.to_owned());
+        if let Some(image) = file.environment.as_ref().and_then(|table| table.get_ref().image.as_ref()) {
+            loader.files.extend(Some(self.beside(image.get_ref())).filter(|path| path.is_file()));
+        }
         let environment = match &file.environment {
             None => None,
             Some(table) => self.environment(table, &mut loader.warnings)?,
@@ -76,6 +80,7 @@ impl File<'_> {
             film,
             integrator,
             settings,
+            files: loader.files,
             warnings: loader.warnings,
         };
         scene.sensor = sensor.unwrap_or_else(|| {

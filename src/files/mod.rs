@@ -2,9 +2,18 @@
 //!
 //! Every file is written beside its final place and renamed, so that nobody ever sees half of one.
 
+mod lock;
+mod place;
+
+pub use lock::Lock;
+pub use place::{Place, same_file};
+
 use crate::{Error, Result};
+use fs4::FileExt;
+use place::folder_of;
+use std::fs::File;
 use std::io::{BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Checks that a file can be created at `path` or replaced there.
 ///
@@ -21,6 +30,9 @@ pub fn check_writable(path: &Path) -> Result<()> {
     if path.as_os_str().as_encoded_bytes().last().is_some_and(|b| std::path::is_separator(char::from(*b))) {
         return Err(Error::write(path, "it is the name of a folder; give a file name"));
     }
+    if std::fs::metadata(path).is_ok_and(|about| !about.is_file()) {
+        return Err(Error::write(path, "there is something that is not a file; give another name"));
+    }
     // A rename would replace what somebody has protected.
     if std::fs::metadata(path).is_ok_and(|about| about.permissions().readonly()) {
         return Err(Error::write(path, "it is read-only; make it writable, or give another name"));
@@ -35,26 +47,6 @@ pub fn check_writable(path: &Path) -> Result<()> {
 /// [`Error::Write`] if the system refuses; then nothing has changed at `path`.
 pub fn save_text(path: &Path, text: &str) -> Result<()> {
     write_atomically(path, |out| out.write_all(text.as_bytes()))
-}
-
-/// Whether two names lead to one file, or would once it is written.
-pub fn same_file(a: &Path, b: &Path) -> bool {
-    let place = |path: &Path| {
-        // A link leads elsewhere only if there is something.
-        std::fs::canonicalize(path)
-            .ok()
-            .or_else(|| Some(std::fs::canonicalize(folder_of(path)).ok()?.join(path.file_name()?)))
-    };
-    a == b || place(a).is_some_and(|a| Some(a) == place(b))
-}
-
-/// The folder in which `path` lies.
-fn folder_of(path: &Path) -> PathBuf {
-    match path.parent() {
-        Some(parent) if parent.as_os_str().is_empty() => PathBuf::from("."),
-        Some(parent) => parent.to_owned(),
-        None => PathBuf::from("/"),
-    }
 }
 
 /// How the names of the files end that are renamed once they are complete.
@@ -75,8 +67,12 @@ pub fn remove_left_over(path: &Path) {
         // What remains in the middle is the random part: without it, other files of similar names would match.
         let middle = name.strip_prefix(&prefix).and_then(|rest| rest.strip_suffix(TEMPORARY_SUFFIX));
         if middle.is_some_and(|middle| middle.len() == 6 && middle.chars().all(char::is_alphanumeric)) {
-            // Nobody waits for it: if it stays, it only takes room.
-            let _ = std::fs::remove_file(entry.path());
+            // Whoever still writes it holds it.
+            let Ok(file) = File::options().write(true).open(entry.path()) else { continue };
+            if FileExt::try_lock(&file).is_ok() {
+                // Nobody waits for it: if it stays, it only takes room.
+                let _ = std::fs::remove_file(entry.path());
+            }
         }
     }
 }
@@ -92,9 +88,12 @@ fn create_beside(path: &Path) -> Result<tempfile::NamedTempFile> {
         // What any new file gets, less the umask; a temporary file would be its owner's alone.
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
-    builder
-        .tempfile_in(folder_of(path))
-        .map_err(|e| Error::write(path, format!("the folder {} cannot be written to ({e})", folder_of(path).display())))
+    let file = builder.tempfile_in(folder_of(path)).map_err(|e| {
+        Error::write(path, format!("the folder {} cannot be written to ({e})", folder_of(path).display()))
+    })?;
+    // So that nobody takes it for a left-over meanwhile. Where there are no locks, there is nothing to be done.
+    let _ = FileExt::try_lock(file.as_file());
+    Ok(file)
 }
 
 /// Lets `fill` write a temporary file, and moves that to `path` once it is complete on the disk.
@@ -102,10 +101,20 @@ pub(crate) fn write_atomically<E: ToString>(
     path: &Path,
     fill: impl FnOnce(&mut dyn Write) -> std::result::Result<(), E>,
 ) -> Result<()> {
-    let file = create_beside(path)?;
-    let mut out = BufWriter::new(file);
-    fill(&mut out).map_err(|e| Error::write(path, e))?;
-    let file = out.into_inner().map_err(|e| Error::write(path, e.error()))?;
+    write_file_atomically(path, |file| {
+        let mut out = BufWriter::new(file);
+        fill(&mut out).map_err(|e| e.to_string())?;
+        out.flush().map_err(|e| e.to_string())
+    })
+}
+
+/// The same for what does not write from the beginning to the end.
+pub(crate) fn write_file_atomically<E: ToString>(
+    path: &Path,
+    fill: impl FnOnce(&mut File) -> std::result::Result<(), E>,
+) -> Result<()> {
+    let mut file = create_beside(path)?;
+    fill(file.as_file_mut()).map_err(|e| Error::write(path, e))?;
     file.as_file().sync_all().map_err(|e| Error::write(path, e))?;
     file.persist(path).map_err(|e| Error::write(path, e.error))?;
     Ok(())

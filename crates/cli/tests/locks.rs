@@ -1,0 +1,75 @@
+//! Two jobs never write one checkpoint, nor one part; and a job that was killed is in nobody's way.
+
+mod common;
+
+use common::{Folder, stderr};
+use std::process::Child;
+use std::time::Duration;
+
+const CHECKPOINT: [&str; 5] = ["--checkpoint", "c.exr", "--checkpoint-every", "0.01", "--resume"];
+
+/// A render that lasts until it is killed, once it has a checkpoint.
+fn endless(folder: &Folder, more: &[&str]) -> Child {
+    let words = ["render", "good.obj", "--backend", "cpu", "--width", "16", "--quiet", "-o", "a.exr"];
+    let mut child = folder.luminaire(&[&words[..], &CHECKPOINT, more].concat()).spawn().unwrap();
+    for _ in 0..6000 {
+        if folder.path().join("c.exr").exists() {
+            return child;
+        }
+        assert!(child.try_wait().unwrap().is_none(), "the render has ended");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    panic!("there is no checkpoint after a minute");
+}
+
+#[test]
+fn one_checkpoint_is_one_jobs() {
+    let folder = Folder::new();
+    let mut child = endless(&folder, &["--time", "600"]);
+    let process = format!("process {} on ", child.id());
+    let words = ["render", "good.obj", "--backend", "cpu", "--width", "16", "--quiet", "--spp", "4", "-o", "b.exr"];
+    for name in ["c.exr", "./c.exr"] {
+        let more = ["--checkpoint", name, "--resume"];
+        let output = folder.luminaire(&[&words[..], &more].concat()).output().unwrap();
+        let said = stderr(&output);
+        assert!(output.status.code() == Some(1) && said.contains(&process) && said.contains("c.exr.lock"), "{said}");
+    }
+    assert!(!folder.path().join("b.exr").exists());
+    // Killed as a power cut does: the lock file stays, and nobody holds it.
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert!(folder.path().join("c.exr.lock").exists());
+    let output = folder.luminaire(&[&words[..], &CHECKPOINT].concat()).output().unwrap();
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(
+        !folder.names().iter().any(|name| name.ends_with(".lock") || name.ends_with(".tmp")),
+        "{:?}",
+        folder.names()
+    );
+}
+
+#[test]
+fn one_part_is_one_jobs() {
+    let folder = Folder::new();
+    let mut child = endless(&folder, &["--samples", "0..4000000000"]);
+    let words = ["render", "good.obj", "--backend", "cpu", "--width", "16", "--quiet", "--samples", "0..4"];
+    let job = |name: &str| folder.luminaire(&[&words[..], &["-o", name]].concat()).output().unwrap();
+    let output = job("a.exr");
+    assert!(output.status.code() == Some(1) && stderr(&output).contains("a.exr.lock"), "{}", stderr(&output));
+    assert!(job("b.exr").status.success());
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert!(job("a.exr").status.success());
+}
+
+#[test]
+fn a_file_in_the_locks_place_is_spared() {
+    let folder = Folder::new();
+    folder.write("c.exr.lock", "precious");
+    let words = ["render", "good.obj", "--backend", "cpu", "--width", "8", "--spp", "2", "-o", "a.png"];
+    let output = folder.luminaire(&[&words[..], &CHECKPOINT].concat()).output().unwrap();
+    let said = stderr(&output);
+    assert!(output.status.code() == Some(1) && said.contains("c.exr.lock") && said.contains("rename it"), "{said}");
+    assert_eq!(std::fs::read_to_string(folder.path().join("c.exr.lock")).unwrap(), "precious");
+    assert!(!folder.path().join("a.png").exists());
+}

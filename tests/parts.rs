@@ -1,0 +1,95 @@
+//! Parts and checkpoints on disk: whatever byte of one changes, its samples are refused or are what they were.
+
+use glam::{Affine3A, Vec3};
+use luminaire::backend::{self, Backend, Request};
+use luminaire::part::{self, Provenance};
+use luminaire::render::{End, Limits, Rendered};
+use luminaire::scene::build::{add, empty, lamp, quad};
+use luminaire::{Error, Film, Scene};
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+/// A lamp, and its render with some samples that are left out.
+fn rendered() -> (Scene, Rendered) {
+    let mut scene = empty(5, 4);
+    let wall = quad(Vec3::new(-1.0, -1.0, -1.0), Vec3::X * 3.0, Vec3::Y * 3.0);
+    add(&mut scene, wall, lamp(Vec3::new(1.0, 2.0, 3.0)), Affine3A::IDENTITY);
+    let mut renderer = backend::open(&scene, &Request { backend: Some(Backend::Cpu), device: None }).unwrap();
+    let limits = Limits { spp: Some(6), ..Limits::default() };
+    let nothing = Rendered::nothing(renderer.size, 0).unwrap();
+    let mut rendered = renderer.resume(nothing, limits, &mut |_| {}, &AtomicBool::new(false)).unwrap();
+    assert!(matches!(rendered.end, End::Samples));
+    rendered.film.dropped.insert((7, 2), 1);
+    rendered.film.sums[3][1] = [1.0e-300, -0.0, 12345.678];
+    (scene, rendered)
+}
+
+/// What is read back; an error in words.
+fn read(path: &Path) -> Result<Film, String> {
+    let refused = |error: Error| error.to_string();
+    Ok(part::read(path).map_err(refused)?.0.film)
+}
+
+#[test]
+fn no_byte_changes_unnoticed() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("c.exr");
+    let (scene, rendered) = rendered();
+    part::save(&path, &rendered, &Provenance::of(&scene)).unwrap();
+    let sound = std::fs::read(&path).unwrap();
+    assert!(read(&path).unwrap() == rendered.film);
+    // All of the head, where each byte means something else, and every bit of some of the pixels.
+    let mut refused = 0;
+    for at in 0..sound.len() {
+        for flip in if at % 16 == 0 { vec![1, 2, 4, 8, 16, 32, 64, 128, 0xff] } else { vec![1 << (at % 8)] } {
+            let mut damaged = sound.clone();
+            damaged[at] ^= flip;
+            std::fs::write(&path, &damaged).unwrap();
+            match read(&path) {
+                Ok(film) => assert!(film == rendered.film, "byte {at} of {}, flipped by {flip}, is read", sound.len()),
+                Err(_) => refused += 1,
+            }
+            assert!(part::resume(&path, &scene).is_err() && part::merge(&[path.clone()]).is_err(), "byte {at}");
+        }
+    }
+    assert!(refused >= sound.len());
+    // Cut off, and grown.
+    for length in [0, 7, 100, sound.len() / 2, sound.len() - 1] {
+        std::fs::write(&path, &sound[..length]).unwrap();
+        assert!(read(&path).is_err(), "{length} bytes");
+    }
+    std::fs::write(&path, [&sound[..], &[0]].concat()).unwrap();
+    assert!(read(&path).unwrap_err().contains("damaged"));
+    std::fs::write(&path, &sound).unwrap();
+    assert!(read(&path).unwrap() == rendered.film && part::resume(&path, &scene).is_ok());
+}
+
+#[test]
+fn without_a_digest_nothing_is_believed() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("c.exr");
+    let (scene, rendered) = rendered();
+    part::save(&path, &rendered, &Provenance::of(&scene)).unwrap();
+    let bytes = std::fs::read(&path).unwrap();
+    let name = b"luminaire.digest";
+    let at = bytes.windows(name.len()).position(|bytes| bytes == name).unwrap();
+    let mut older = bytes.clone();
+    older[at..at + name.len()].copy_from_slice(b"luminaire.digesu");
+    std::fs::write(&path, older).unwrap();
+    assert!(read(&path).unwrap_err().contains("no digest"));
+    // And a picture is still no part.
+    rendered.film.save(&path, 0.0).unwrap();
+    assert!(read(&path).unwrap_err().contains("not a part of a render"));
+}
+
+#[test]
+fn the_same_render_is_the_same_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let (scene, rendered) = rendered();
+    let files = ["a.exr", "b.exr"].map(|name| {
+        let path = folder.path().join(name);
+        part::save(&path, &rendered, &Provenance::of(&scene)).unwrap();
+        std::fs::read(path).unwrap()
+    });
+    assert!(files[0] == files[1]);
+}
