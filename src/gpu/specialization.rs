@@ -58,6 +58,8 @@ features! {
     textures: "textures",
     /// Some material is not opaque everywhere.
     holes: "holes",
+    /// Some mesh has vertex colours.
+    vertex_colours: "vertex colours",
 }
 
 /// The kernel that runs: the scene's features, and the choices of its integrator.
@@ -98,6 +100,7 @@ impl KernelModel {
                 [m.maps.ambient, m.maps.lambert, m.maps.glossy, m.maps.emission].iter().any(Option::is_some)
             }),
             holes: material(Material::has_holes),
+            vertex_colours: scene.meshes.iter().any(|m| !m.colours.is_empty()),
         };
         KernelModel {
             features,

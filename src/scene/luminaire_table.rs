@@ -110,7 +110,7 @@ impl LuminaireTable {
 }
 
 /// A vector along the outward normal, in object space: where the winding is counter-clockwise, unless the vertex normals know better.
-fn outward(mesh: &Mesh, triangle: &Triangle) -> DVec3 {
+pub(super) fn outward(mesh: &Mesh, triangle: &Triangle) -> DVec3 {
     let [a, b, c] = triangle.vertices.map(|v| mesh.positions[v as usize].as_dvec3());
     let winding = (b - a).cross(c - a);
     let normals = triangle.vertices.map(|v| mesh.normals.get(v as usize).map_or(DVec3::ZERO, |n| n.as_dvec3()));
