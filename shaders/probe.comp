@@ -62,7 +62,7 @@ void write_hit(uint id, bool found, Hit hit) {
 
 // A surface at the origin whose normal is +z, seen from outside.
 Surfel upward(uint material) {
-    return Surfel(vec3(0.0), vec3(0.0), vec3(0.0, 0.0, 1.0), vec3(0.0, 0.0, 1.0), material, true, vec2(0.0));
+    return Surfel(vec3(0.0), vec3(0.0), vec3(0.0, 0.0, 1.0), vec3(0.0, 0.0, 1.0), material, true, vec2(0.0), vec3(1.0));
 }
 
 void main() {

@@ -13,16 +13,17 @@ layout(constant_id = 8) const bool DIELECTRICS = true;         // some material 
 layout(constant_id = 9) const bool TEXTURES = true;            // some material has a map
 layout(constant_id = 10) const bool HOLES = true;              // some material is not opaque everywhere
 layout(constant_id = 11) const bool THIN = true;                // some material is a sheet whose two sides are one surface
-layout(constant_id = 12) const bool ORTHOGRAPHIC = false;
-layout(constant_id = 13) const bool SOBOL = false;
+layout(constant_id = 12) const bool VERTEX_COLOURS = true;     // some mesh has vertex colours
+layout(constant_id = 13) const bool ORTHOGRAPHIC = false;
+layout(constant_id = 14) const bool SOBOL = false;
 
 // The integrator's choices (src/scene/estimator.rs).
-layout(constant_id = 14) const bool SIMPLE = false;            // the simple ray tracer instead of the path tracer
-layout(constant_id = 15) const uint LIGHT_SAMPLING = 2u;
-layout(constant_id = 16) const bool SOLID_ANGLE = true;        // near triangles are sampled by solid angle
-layout(constant_id = 17) const uint DIRECTIONS = 2u;
-layout(constant_id = 18) const uint EXTINCTION = 3u;
-layout(constant_id = 19) const bool THRESHOLD = false;         // paths of small albedo end
+layout(constant_id = 15) const bool SIMPLE = false;            // the simple ray tracer instead of the path tracer
+layout(constant_id = 16) const uint LIGHT_SAMPLING = 2u;
+layout(constant_id = 17) const bool SOLID_ANGLE = true;        // near triangles are sampled by solid angle
+layout(constant_id = 18) const uint DIRECTIONS = 2u;
+layout(constant_id = 19) const uint EXTINCTION = 3u;
+layout(constant_id = 20) const bool THRESHOLD = false;         // paths of small albedo end
 
 const uint LIGHT_NONE = 0u;
 const uint LIGHT_DIRECT = 1u;
@@ -131,6 +132,9 @@ layout(set = 0, binding = 11) uniform usamplerBuffer texels;
 layout(set = 0, binding = 12) uniform usamplerBuffer environment_texels;
 // Two slots of the environment's alias table in one: threshold and alias each.
 layout(set = 0, binding = 13) uniform usamplerBuffer environment_slots;
+
+// Vertex colours, three texels a triangle, where VERTEX_COLOURS.
+layout(set = 0, binding = 14) uniform usamplerBuffer colours;
 
 // No index.
 const uint NONE = 0xffffffffu;

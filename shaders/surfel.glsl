@@ -8,6 +8,7 @@ struct Surfel {
     uint material;
     bool front;               // wo is on the outward side
     vec2 uv;                  // where TEXTURES
+    vec3 colour;              // of the vertices, where VERTEX_COLOURS
 };
 
 // Bounds on the error of a position; src/gpu/pack/luminaire.rs takes them over a whole triangle.
@@ -26,6 +27,15 @@ vec3 row_abs_dot(vec4 m[3], vec3 v) { return vec3(dot(abs(m[0].xyz), v), dot(abs
 // Normals go by the inverse transpose.
 vec3 normal_to_world(vec4 to_object[3], vec3 n) {
     return to_object[0].xyz * n.x + to_object[1].xyz * n.y + to_object[2].xyz * n.z;
+}
+
+// The colour of the vertices at a point of a triangle (twin: src/reference/hit.rs).
+vec3 vertex_colour(uint triangle, vec2 barycentric) {
+    int base = int(triangle) * TRIANGLE_TEXELS;
+    vec3 a = uintBitsToFloat(texelFetch(colours, base).xyz);
+    vec3 b = uintBitsToFloat(texelFetch(colours, base + 1).xyz);
+    vec3 c = uintBitsToFloat(texelFetch(colours, base + 2).xyz);
+    return (1.0 - barycentric.x - barycentric.y) * a + barycentric.x * b + barycentric.y * c;
 }
 
 Surfel surfel(Hit hit, vec3 wo) {
@@ -54,6 +64,7 @@ Surfel surfel(Hit hit, vec3 wo) {
     s.position_error = gamma(POINT_ROUNDINGS) * (abs(pa) + abs(pb) + abs(pc)) + gamma(PLANE_ROUNDINGS) * size * narrow;
     s.material = triangle.material;
     if (TEXTURES) s.uv = texture_coordinates(hit.triangle, w);
+    if (VERTEX_COLOURS) s.colour = vertex_colour(hit.triangle, w);
 
     vec3 n = vec3(0.0);
     if (VERTEX_NORMALS) {
@@ -109,7 +120,7 @@ Surfel surfel(Hit hit, vec3 wo) {
     return s;
 }
 
-// The material with its textures.
+// The material with its textures, and with the colours of the vertices.
 Material material_at(Surfel s) {
     Material material = load_material(s.material);
     if (TEXTURES) {
@@ -117,6 +128,10 @@ Material material_at(Surfel s) {
         if (material.lambert_map != NONE) material.lambert *= texture_at(material.lambert_map, s.uv).rgb;
         if (GLOSSY && material.glossy_map != NONE) material.glossy *= texture_at(material.glossy_map, s.uv).rgb;
         if (AREA_LUMINAIRES && material.emission_map != NONE) material.emission *= texture_at(material.emission_map, s.uv).rgb;
+    }
+    if (VERTEX_COLOURS) {
+        material.lambert *= s.colour;
+        if (SIMPLE) material.ambient *= s.colour;
     }
     if (AREA_LUMINAIRES && material.one_sided != 0u && !s.front) material.emission = vec3(0.0);
     return material;

@@ -135,6 +135,9 @@ shared! {
 /// Normals at a triangle's corners (binding 3): three texels, of which the fourth component is nothing.
 pub type VertexNormals = [[f32; 4]; 3];
 
+/// Colours of a triangle's corners (binding 14): three texels, of which the fourth component is nothing.
+pub type VertexColours = [[f32; 4]; 3];
+
 shared! {
     /// An instance (binding 4): seven texels, which `object_place` and its neighbours in `scene.glsl` read.
     Object {

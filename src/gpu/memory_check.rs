@@ -15,7 +15,7 @@ const ACCELERATION_STRUCTURE: u64 = 120;
 /// What a scene takes, roughly.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Budget {
-    /// Triangles, normals, texture coordinates, instances.
+    /// Triangles, normals, texture coordinates, vertex colours, instances.
     geometry: u64,
     /// Nodes, or acceleration structures.
     acceleration: u64,
@@ -31,7 +31,8 @@ impl Budget {
         let textured = features.textures || features.holes;
         let triangle = size_of::<layout::Triangle>()
             + if features.vertex_normals { size_of::<layout::VertexNormals>() } else { 0 }
-            + if textured { size_of::<layout::TriangleUvs>() } else { 0 };
+            + if textured { size_of::<layout::TriangleUvs>() } else { 0 }
+            + if features.vertex_colours { size_of::<layout::VertexColours>() } else { 0 };
         let objects = scene.objects.len() as u64 * size_of::<layout::Object>() as u64;
         let texels: u64 = scene.textures.iter().map(|texture| texture.texels.len() as u64).sum();
         let image = scene.environment.as_ref().and_then(|environment| environment.image.as_ref());

@@ -18,7 +18,7 @@ use ash::vk;
 use bytemuck::Pod;
 use std::sync::Arc;
 
-/// Bindings 0 to 6 and 9 to 13.
+/// Bindings 0 to 6 and 9 to 14.
 pub(super) struct GpuScene {
     frame: Buffer,
     /// What `frame` holds.
@@ -85,9 +85,9 @@ impl GpuScene {
         self.frame.write(&[self.frame_data])
     }
 
-    /// Bindings 0 to 13, of which 7 and 8 are the caller's.
+    /// Bindings 0 to 14, of which 7 and 8 are the caller's.
     pub(super) fn bindings<'a>(&'a self, seven: &'a Buffer, eight: &'a Buffer) -> Vec<Binding<'a>> {
-        let [intersector, triangles, normals, objects, uvs] = self.geometry.bindings();
+        let [intersector, triangles, normals, objects, uvs, colours] = self.geometry.bindings();
         vec![
             Binding::Uniform(&self.frame),
             intersector,
@@ -103,6 +103,7 @@ impl GpuScene {
             Binding::Texel(&self.texels),
             Binding::Texel(&self.environment_texels),
             Binding::Texel(&self.environment_slots),
+            colours,
         ]
     }
 }

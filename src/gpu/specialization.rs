@@ -60,6 +60,8 @@ features! {
     holes: "holes",
     /// Some material is a sheet whose two sides are one surface.
     thin: "thin sheets",
+    /// Some mesh has vertex colours.
+    vertex_colours: "vertex colours",
 }
 
 /// The kernel that runs: the scene's features, and the choices of its integrator.
@@ -101,6 +103,7 @@ impl KernelModel {
             }),
             holes: material(Material::has_holes),
             thin: material(|m| m.thin && m.transmission != Vec3::ZERO),
+            vertex_colours: scene.meshes.iter().any(|m| !m.colours.is_empty()),
         };
         KernelModel {
             features,

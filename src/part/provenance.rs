@@ -38,6 +38,8 @@ impl Provenance {
         // Every structure is taken apart by name here and below: what is new in one does not compile until somebody has decided whether samples depend on it.
         let Scene {
             path,
+            // Whatever it is, the same samples come from the same numbers.
+            origin: _,
             meshes,
             objects,
             materials,
@@ -136,9 +138,9 @@ fn floats(hash: &mut Sha256, values: &[f32]) {
 fn geometry(meshes: &[Arc<Mesh>], objects: &[Object]) -> String {
     digest(|hash| {
         for mesh in meshes {
-            let Mesh { name: _, positions, normals, uvs, triangles } = &**mesh;
-            write(hash, &(positions.len(), normals.len(), uvs.len(), triangles.len()));
-            positions.iter().chain(normals).for_each(|v| floats(hash, &v.to_array()));
+            let Mesh { name: _, positions, normals, uvs, colours, triangles } = &**mesh;
+            write(hash, &(positions.len(), normals.len(), uvs.len(), colours.len(), triangles.len()));
+            positions.iter().chain(normals).chain(colours).for_each(|v| floats(hash, &v.to_array()));
             uvs.iter().for_each(|v| floats(hash, &v.to_array()));
             for Triangle { vertices, material } in triangles {
                 vertices.iter().chain([material]).for_each(|i| hash.update(i.to_le_bytes()));

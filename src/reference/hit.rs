@@ -21,6 +21,14 @@ pub(super) fn interpolate(weights: [f64; 3], values: [DVec3; 3]) -> DVec3 {
     weights[0] * values[0] + weights[1] * values[1] + weights[2] * values[2]
 }
 
+/// The colour of the vertices at a point of a triangle that has these weights; 1 where the mesh has none.
+pub(super) fn vertex_colour(mesh: &Mesh, triangle: &Triangle, weights: [f64; 3]) -> DVec3 {
+    if mesh.colours.is_empty() {
+        return DVec3::ONE;
+    }
+    interpolate(weights, triangle.vertices.map(|v| mesh.colours[v as usize].as_dvec3()))
+}
+
 /// Texture coordinates at a point of a triangle that has these weights; 0 where the mesh has none.
 pub(super) fn texture_coordinates(mesh: &Mesh, triangle: &Triangle, weights: [f64; 3]) -> DVec2 {
     if mesh.uvs.is_empty() {

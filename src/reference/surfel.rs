@@ -1,6 +1,6 @@
 //! The surface element: everything that shading needs to know about a point on a surface.
 
-use super::hit::{Hit, interpolate, texture_coordinates};
+use super::hit::{Hit, interpolate, texture_coordinates, vertex_colour};
 use super::prepared_scene::Reference;
 use super::rounding::gamma;
 use crate::scene::outward;
@@ -76,6 +76,7 @@ impl Reference {
         let material = self.scene.material_of(object, triangle);
         let uv = texture_coordinates(mesh, triangle, weights);
         let map = |map: Option<u32>| self.map(map, uv).truncate();
+        let colour = vertex_colour(mesh, triangle, weights);
         Surfel {
             owner: [hit.object, hit.triangle],
             position,
@@ -89,8 +90,8 @@ impl Reference {
             } else {
                 DVec3::ZERO
             },
-            ambient: material.ambient.as_dvec3() * map(material.maps.ambient),
-            lambert: material.lambert.as_dvec3() * map(material.maps.lambert),
+            ambient: material.ambient.as_dvec3() * map(material.maps.ambient) * colour,
+            lambert: material.lambert.as_dvec3() * map(material.maps.lambert) * colour,
             glossy: material.glossy.as_dvec3() * map(material.maps.glossy),
             exponent: material.exponent.into(),
             reflection: material.reflection.as_dvec3(),

@@ -4,7 +4,7 @@ use super::{
     Estimator, FilmSettings, Filter, Integrator, Luminaire, Material, Mesh, Object, Projection, RenderSettings,
     Sampler, Scene, Sensor, Triangle,
 };
-use glam::{Affine3A, Mat3, Vec3};
+use glam::{Affine3A, DVec3, Mat3, Vec3};
 use std::collections::HashMap;
 
 /// A scene without objects, to be filled by [`add`]: the sensor is at the origin and looks along -z, 60 degrees high; unlimited paths. The
@@ -12,6 +12,7 @@ use std::collections::HashMap;
 pub fn empty(width: u32, height: u32) -> Scene {
     Scene {
         path: "test".into(),
+        origin: DVec3::ZERO,
         meshes: vec![],
         objects: vec![],
         materials: vec![],

@@ -14,6 +14,8 @@ pub struct Mesh {
     pub normals: Vec<Vec3>,
     /// Texture coordinates, v upwards: empty (no triangle has any), or one for each position.
     pub uvs: Vec<Vec2>,
+    /// Colours of the vertices, linear, 0 to 1, which multiply the diffuse and the ambient albedo: empty (none), or one for each position.
+    pub colours: Vec<Vec3>,
     /// The triangles; all have a non-zero area.
     pub triangles: Vec<Triangle>,
 }

@@ -14,6 +14,7 @@ mod luminaire;
 mod luminaire_table;
 mod material;
 mod mesh;
+mod overlap;
 mod sensor;
 mod settings;
 mod texture;

@@ -4,7 +4,7 @@ use super::widen;
 use super::{
     Environment, FilmSettings, Integrator, Luminaire, Material, Mesh, Object, RenderSettings, Sensor, Texture, Triangle,
 };
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -16,6 +16,9 @@ use std::sync::Arc;
 pub struct Scene {
     /// The file it came from.
     pub path: PathBuf,
+    /// What has to be added to a world position to have it in the coordinates of the files: the loader moves scenes that lie far from the origin,
+    /// as surveyors' do, before their numbers are rounded to single precision. Zero for all others.
+    pub origin: DVec3,
     /// Meshes, in object space; an OBJ file is one mesh.
     pub meshes: Vec<Arc<Mesh>>,
     /// Instances of meshes. Never empty.

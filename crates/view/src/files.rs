@@ -5,14 +5,15 @@ use super::news::News;
 use super::sensor_table::to_toml;
 use super::shown::Shown;
 use super::wanted::{Saved, Wanted};
+use glam::DVec3;
 use luminaire::film::Film;
 use luminaire::scene::Sensor;
 use luminaire::{Result, picture};
 use std::path::{Path, PathBuf};
 
-/// Writes a camera to a file whose name begins with `stem`. The news are its text, and the file's name or why it was not written.
-pub fn save_camera(stem: &str, sensor: &Sensor) -> [News; 2] {
-    let text = to_toml(sensor);
+/// Writes a camera of a scene with this origin to a file whose name begins with `stem`. The news are its text, and the file's name or why it was not written.
+pub fn save_camera(stem: &str, sensor: &Sensor, origin: DVec3) -> [News; 2] {
+    let text = to_toml(sensor, origin);
     let path = free_name(Path::new(""), stem, "camera", "toml");
     let written = written(luminaire::files::save_text(&path, &text), &path);
     [News::Done(text), written]

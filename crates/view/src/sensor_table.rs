@@ -1,19 +1,27 @@
 //! Writes a camera as the `[sensor]` table of a scene file.
 
+use glam::DVec3;
 use luminaire::scene::{Projection, Sensor};
 
-/// The table of a sensor; read back, it is the same to the last bit.
-pub fn to_toml(sensor: &Sensor) -> String {
+/// The table of a sensor of a scene with this origin, in the coordinates of the files; read back, it is the same to the last bit.
+pub fn to_toml(sensor: &Sensor, origin: DVec3) -> String {
     // `{:?}` writes the fewest digits that are read back as the same number.
     let vector = |v: glam::Vec3| format!("[{:?}, {:?}, {:?}]", v.x, v.y, v.z);
+    let point = |v: glam::Vec3| {
+        if origin == DVec3::ZERO {
+            return vector(v);
+        }
+        let DVec3 { x, y, z } = v.as_dvec3() + origin;
+        format!("[{x:?}, {y:?}, {z:?}]")
+    };
     let (kind, extent) = match sensor.projection {
         Projection::Perspective { fov } => ("perspective", format!("fov = {fov:?}")),
         Projection::Orthographic { height } => ("orthographic", format!("height = {height:?}")),
     };
     let mut text = format!(
         "[sensor]\nkind = \"{kind}\"\nposition = {}\ntarget = {}\nup = {}\n{extent}\n",
-        vector(sensor.position),
-        vector(sensor.target),
+        point(sensor.position),
+        point(sensor.target),
         vector(sensor.up)
     );
     if let Some(lens) = sensor.lens {
@@ -51,8 +59,23 @@ mod tests {
             Sensor { projection: Projection::Orthographic { height: 1e-7 / 3.0 }, ..moved },
         ] {
             let path = folder.path().join("a.toml");
-            std::fs::write(&path, to_toml(&sensor) + "[[object]]\nmesh = \"a.obj\"\n").unwrap();
+            std::fs::write(&path, to_toml(&sensor, DVec3::ZERO) + "[[object]]\nmesh = \"a.obj\"\n").unwrap();
             assert_eq!(load(&path).unwrap().sensor, sensor);
         }
+    }
+
+    #[test]
+    fn far_from_the_origin_a_written_camera_is_read_back_too() {
+        let folder = tempfile::tempdir().unwrap();
+        let mesh = "v 412345.678 5654321.234 98.5\nv 412346.678 5654321.234 98.5\nv 412345.678 5654322.234 98.5\nf 1 2 3\n";
+        std::fs::write(folder.path().join("a.obj"), mesh).unwrap();
+        let path = folder.path().join("a.toml");
+        let object = "[[object]]\nmesh = \"a.obj\"\n";
+        let sensor = "[sensor]\nposition = [412346.1, 5654321.5, 103.75]\ntarget = [412346.0, 5654321.6, 98.5]\nfov = 40\n";
+        std::fs::write(&path, format!("{sensor}{object}")).unwrap();
+        let scene = load(&path).unwrap();
+        assert!(scene.origin.y > 5e6 && scene.sensor.position.length() < 20.0, "{:?}", scene.sensor);
+        std::fs::write(&path, to_toml(&scene.sensor, scene.origin) + object).unwrap();
+        assert_eq!(load(&path).unwrap().sensor, scene.sensor);
     }
 }

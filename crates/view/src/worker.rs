@@ -133,7 +133,8 @@ impl Worker {
                     Order::NextBackend => self.next_backend(&wanted),
                     Order::NextEstimator => self.next_estimator()?,
                     Order::SaveCamera => {
-                        save_camera(&self.stem, &wanted.sight.sensor).into_iter().for_each(&self.send);
+                        let news = save_camera(&self.stem, &wanted.sight.sensor, self.scene.origin);
+                        news.into_iter().for_each(&self.send);
                     }
                     Order::Save(saved) => saves.push(saved),
                 }

@@ -3,7 +3,7 @@
 use super::ray_query;
 use crate::gpu::bvh::{MeshBvh, STACK_SIZE, TwoLevelBvh, spatial_order};
 use crate::gpu::layout::Object;
-use crate::gpu::pack::triangle::{object, texture_coordinates, triangles, vertex_normals};
+use crate::gpu::pack::triangle::{object, texture_coordinates, triangles, vertex_colours, vertex_normals};
 use crate::gpu::specialization::KernelModel;
 use crate::gpu::vulkan::binding::Binding;
 use crate::gpu::vulkan::device::Device;
@@ -20,6 +20,7 @@ pub struct Geometry {
     triangles: TexelBuffer,
     normals: TexelBuffer,
     uvs: TexelBuffer,
+    colours: TexelBuffer,
     objects: TexelBuffer,
 }
 
@@ -119,22 +120,25 @@ impl Geometry {
         let normals = if model.features.vertex_normals { vertex_normals(scene, meshes) } else { vec![] };
         let textured = model.features.textures || model.features.holes;
         let uvs = if textured { texture_coordinates(scene, meshes) } else { vec![] };
+        let colours = if model.features.vertex_colours { vertex_colours(scene, meshes) } else { vec![] };
         let objects: Vec<Object> = object_order.iter().map(|&index| object(scene, meshes, index)).collect();
         let triangles = TexelBuffer::new(device, "triangles", &corners, usage)?;
         let normals = TexelBuffer::new(device, "normals", &normals, vk::BufferUsageFlags::empty())?;
         let uvs = TexelBuffer::new(device, "texture coordinates", &uvs, vk::BufferUsageFlags::empty())?;
+        let colours = TexelBuffer::new(device, "vertex colours", &colours, vk::BufferUsageFlags::empty())?;
         let intersector = intersector(&triangles, &objects)?;
         Ok(Geometry {
             intersector,
             triangles,
             normals,
             uvs,
+            colours,
             objects: TexelBuffer::new(device, "objects", &objects, vk::BufferUsageFlags::empty())?,
         })
     }
 
-    /// Bindings 1 to 4 and 9.
-    pub(crate) fn bindings(&self) -> [Binding<'_>; 5] {
+    /// Bindings 1 to 4, 9 and 14.
+    pub(crate) fn bindings(&self) -> [Binding<'_>; 6] {
         let intersector = match &self.intersector {
             Intersector::ComputeBvh(nodes) => Binding::Texel(nodes),
             Intersector::RayQuery(top) => Binding::AccelerationStructure(top.handle()),
@@ -145,6 +149,7 @@ impl Geometry {
             Binding::Texel(&self.normals),
             Binding::Texel(&self.objects),
             Binding::Texel(&self.uvs),
+            Binding::Texel(&self.colours),
         ]
     }
 }

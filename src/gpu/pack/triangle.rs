@@ -1,7 +1,7 @@
 //! Triangles and objects, in the order in which the kernel counts them.
 
 use crate::gpu::bvh::MeshBvh;
-use crate::gpu::layout::{self, HAS_PLANE, VertexNormals};
+use crate::gpu::layout::{self, HAS_PLANE, VertexColours, VertexNormals};
 use crate::scene::{Mesh, Scene, Triangle, widen};
 use glam::{DAffine3, Vec2, Vec3};
 
@@ -29,6 +29,15 @@ pub(in crate::gpu) fn vertex_normals(scene: &Scene, meshes: &[MeshBvh]) -> Vec<V
     let mut packed = Vec::with_capacity(count(meshes));
     packed.extend(in_order(scene, meshes).map(|(mesh, _, triangle)| {
         triangle.vertices.map(|v| mesh.normals.get(v as usize).copied().unwrap_or(Vec3::ZERO).extend(0.0).to_array())
+    }));
+    packed
+}
+
+/// Their vertex colours; white where a mesh has none.
+pub(in crate::gpu) fn vertex_colours(scene: &Scene, meshes: &[MeshBvh]) -> Vec<VertexColours> {
+    let mut packed = Vec::with_capacity(count(meshes));
+    packed.extend(in_order(scene, meshes).map(|(mesh, _, triangle)| {
+        triangle.vertices.map(|v| mesh.colours.get(v as usize).copied().unwrap_or(Vec3::ONE).extend(0.0).to_array())
     }));
     packed
 }

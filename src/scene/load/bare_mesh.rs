@@ -6,7 +6,7 @@ use crate::Result;
 use crate::scene::{
     Estimator, FilmSettings, Filter, Integrator, Luminaire, Object, Projection, RenderSettings, Scene, Sensor, widen,
 };
-use glam::{Affine3A, DVec3, Vec3};
+use glam::{Affine3A, DAffine3, DVec3, Vec3};
 use std::path::Path;
 
 /// Vertical field of view of the framing camera, in degrees.
@@ -29,12 +29,14 @@ pub(super) const FILM: FilmSettings = FilmSettings { width: 512, height: 512, fi
 /// Loads a bare OBJ.
 pub(super) fn load(path: &Path) -> Result<Scene> {
     let mut loader = Loader::new(Vec::new());
-    let mesh = loader.mesh(path, None)?;
+    let mesh = loader.mesh(path, obj::Reading::default())?;
     let object = Object { name: obj::file_name(path), mesh, object_to_world: Affine3A::IDENTITY, material: None };
-    let objects = vec![object];
+    let mut objects = vec![object];
+    let origin = loader.settle(&mut objects, &[DAffine3::IDENTITY]);
     let (materials, textures) = loader.finish_materials(&objects);
     let mut scene = Scene {
         path: path.to_owned(),
+        origin,
         meshes: loader.meshes,
         objects,
         materials,

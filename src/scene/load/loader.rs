@@ -1,11 +1,13 @@
 //! The loader: meshes, materials and textures that a scene has loaded so far, each file once.
 
+use super::far::{self, FilePlace};
 use super::material_draft::{Draft, DraftMaps};
 use super::text_file::shortened;
 use super::texture::Textures;
 use super::{mtl, obj};
 use crate::Result;
 use crate::scene::{Maps, Material, Mesh, Object, Texture};
+use glam::{DAffine3, DVec3};
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -29,8 +31,12 @@ pub(super) struct Loader {
     named: Vec<HashMap<String, u32>>,
     /// For each mesh, where its file first uses a material without texture coordinates.
     without_uv: Vec<Vec<WithoutUv>>,
-    /// By file and the bits of `smooth`.
-    mesh_files: HashMap<(PathBuf, Option<u32>), u32>,
+    /// Where each mesh lies in the coordinates of its file.
+    places: Vec<FilePlace>,
+    /// By file and how it was read.
+    mesh_files: HashMap<(PathBuf, obj::Reading), u32>,
+    /// The fallback of meshes with coloured vertices, if there are any.
+    coloured_fallback: Option<u32>,
     libraries: HashMap<PathBuf, HashMap<String, u32>>,
 }
 
@@ -54,23 +60,25 @@ impl Loader {
             defined: HashMap::new(),
             named: Vec::new(),
             without_uv: Vec::new(),
+            places: Vec::new(),
             mesh_files: HashMap::new(),
+            coloured_fallback: None,
             libraries: HashMap::new(),
         }
     }
 
-    /// The mesh of an OBJ file with its MTL files; the same file is loaded once. `smooth`: see [`obj::read`].
+    /// The mesh of an OBJ file with its MTL files; the same file is loaded once.
     ///
     /// # Errors
     /// If the OBJ cannot be read or is wrong. A missing or wrong MTL file is a warning.
-    pub(super) fn mesh(&mut self, path: &Path, smooth: Option<f32>) -> Result<u32> {
-        let identity = (identity(path), smooth.map(f32::to_bits));
+    pub(super) fn mesh(&mut self, path: &Path, how: obj::Reading) -> Result<u32> {
+        let identity = (identity(path), how);
         if let Some(mesh) = self.mesh_files.get(&identity) {
             return Ok(*mesh);
         }
-        let obj::Obj { mut mesh, materials, libraries, without_uv, warnings } = obj::read(path, smooth)?;
+        let obj::Obj { mut mesh, place, materials, libraries, without_uv, warnings } = obj::read(path, how)?;
         self.files.push(path.to_owned());
-        // The same file with another `smooth` has the same faults.
+        // The same file read another way has the same faults.
         let first = !self.mesh_files.keys().any(|(file, _)| *file == identity.0);
         self.warnings.extend(warnings.into_iter().filter(|warning| first || warning.contains("`smooth`")));
         let mut named = HashMap::new();
@@ -78,14 +86,19 @@ impl Loader {
             self.library_line(path, *line, names, &mut named);
         }
         let mut missing = Vec::new();
+        let coloured = !mesh.colours.is_empty();
+        let fallback = if coloured { self.coloured_fallback() } else { 0 };
         // Entry 0 is for triangles before the first usemtl.
-        let mut material_of = vec![0];
+        let mut material_of = vec![fallback];
         for (name, line) in &materials {
             let index = named.get(name).copied().or_else(|| self.define(name));
             if index.is_none() {
                 missing.push((name, *line));
             }
-            material_of.push(index.unwrap_or(0));
+            material_of.push(index.unwrap_or(fallback));
+        }
+        if coloured {
+            material_of.iter().for_each(|index| self.drafts[*index as usize].coloured = true);
         }
         if let Some((_, line)) = missing.first().filter(|_| first) {
             let names = listed(missing.iter().map(|(name, _)| name.as_str()));
@@ -97,6 +110,7 @@ impl Loader {
         }
         let index = self.meshes.len() as u32;
         self.meshes.push(mesh.into());
+        self.places.push(place);
         self.named.push(named);
         let at = |line| format!("{}:{line}", path.display());
         let without_uv =
@@ -111,6 +125,19 @@ impl Loader {
         let own = self.named[mesh as usize].get(name).copied();
         let any = || self.drafts.iter().position(|draft| draft.name == name).map(|index| index as u32);
         own.or_else(any).or_else(|| self.define(name))
+    }
+
+    /// Moves the scene to where single precision can hold it; see [`far::settle`].
+    pub(super) fn settle(&mut self, objects: &mut [Object], to_world: &[DAffine3]) -> DVec3 {
+        far::settle(&mut self.meshes, &mut self.places, objects, to_world, &mut self.warnings)
+    }
+
+    /// The material of triangles of coloured meshes that have no other: white where the plain fallback is grey.
+    fn coloured_fallback(&mut self) -> u32 {
+        *self.coloured_fallback.get_or_insert_with(|| {
+            self.drafts.push(Draft::named("default"));
+            self.drafts.len() as u32 - 1
+        })
     }
 
     /// The names that [`Loader::material`] knows, for a message.

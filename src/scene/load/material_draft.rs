@@ -51,6 +51,8 @@ pub(super) struct Draft {
     pub maps: DraftMaps,
     /// Warnings that many materials of a file may share: the file, and what is said of them.
     pub shared: Vec<(String, String)>,
+    /// Whether it is on meshes whose vertices have colours, which multiply the diffuse albedo.
+    pub coloured: bool,
     /// What had to be guessed: warnings, if the material is in use.
     pub notes: Vec<String>,
 }
@@ -131,7 +133,7 @@ impl Draft {
 
     /// Fills in the defaults, loads the maps and scales down what would create energy; each such decision is a warning.
     ///
-    /// A missing number whose map is given is 1. Without a map, a missing diffuse albedo is 0.8, but 0 where the material is
+    /// A missing number whose map is given is 1. Without a map, a missing diffuse albedo is 0.8 (1 under the colours of vertices), but 0 where the material is
     /// described by another albedo or an emission alone; a missing ambient albedo is the diffuse one with its map.
     pub(super) fn finish(&self, textures: &mut Textures, warnings: &mut Vec<String>) -> Material {
         let name = &self.name;
@@ -149,6 +151,7 @@ impl Draft {
         let lambert = self.diffuse.unwrap_or(match (self.maps.diffuse.file(), described) {
             (Some(_), _) => Vec3::ONE,
             (None, true) => Vec3::ZERO,
+            (None, false) if self.coloured => Vec3::ONE,
             (None, false) => DEFAULT_LAMBERT,
         });
         let impulses = reflection != Vec3::ZERO || transmission != Vec3::ZERO;

@@ -3,6 +3,7 @@
 mod bare_mesh;
 mod bodies;
 mod environment;
+mod far;
 mod loader;
 mod material_draft;
 mod mtl;
@@ -40,6 +41,8 @@ pub fn load(path: &Path) -> Result<Scene> {
         }
     };
     scene.warnings.extend(bodies::warnings(&scene));
+    let merged = scene.merge_overlapping_lamps();
+    scene.warnings.extend(merged);
     for warning in &mut scene.warnings {
         // Names come from files, and a terminal would obey.
         if warning.contains(char::is_control) {
@@ -47,7 +50,7 @@ pub fn load(path: &Path) -> Result<Scene> {
         }
     }
     let (low, high) = scene.world_bounds();
-    let largest = low.abs().max(high.abs()).max_element();
+    let largest = (low + scene.origin).abs().max((high + scene.origin).abs()).max_element();
     if largest > LARGEST_COORDINATE {
         let message = format!("a coordinate of {largest:e} is too large; scale the scene to stay within 1e18");
         return Err(Error::scene(path, message));

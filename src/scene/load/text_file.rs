@@ -50,7 +50,7 @@ pub(super) fn shortened(word: &str) -> Cow<'_, str> {
 }
 
 /// Reads a text file. A UTF-8 byte-order mark is dropped, and bytes that are not UTF-8 become U+FFFD: they sit in comments
-/// and names, where they do no harm.
+/// and names, where they do no harm. Lines may end as they do on any system, the first Macintoshes (a carriage return) included.
 ///
 /// # Errors
 /// As for [`read_bytes`], and if the file is UTF-16, or holds a NUL byte (then it is binary or damaged).
@@ -67,7 +67,40 @@ pub(super) fn read_text(path: &Path) -> Result<String> {
         let message = "a NUL byte, expected plain text: the file is binary, damaged, or UTF-16 (save it as UTF-8)";
         return Err(Error::Parse { path: path.to_owned(), line, column: 0, message: message.into() });
     }
+    end_lines(&mut bytes);
     Ok(String::from_utf8(bytes).unwrap_or_else(|e| String::from_utf8_lossy(e.as_bytes()).into_owned()))
+}
+
+/// Makes a line feed of every carriage return that has none behind it.
+fn end_lines(bytes: &mut [u8]) {
+    for index in 0..bytes.len() {
+        if bytes[index] == b'\r' && bytes.get(index + 1) != Some(&b'\n') {
+            bytes[index] = b'\n';
+        }
+    }
+}
+
+/// A number as programs write it. What is not finite has many names: `nan`, `-nan(ind)`, and those of Microsoft's C library, `-1.#IND00`, `1.#QNAN`,
+/// `1.#INF`.
+pub(super) fn parse_number(word: &str) -> Option<f64> {
+    if let Ok(number) = word.parse() {
+        return Some(number);
+    }
+    let (sign, name) = match word.strip_prefix('-') {
+        Some(rest) => (-1.0, rest),
+        None => (1.0, word.strip_prefix('+').unwrap_or(word)),
+    };
+    let name = name.to_ascii_lowercase();
+    if let Some((digits, kind)) = name.split_once(".#") {
+        if !digits.bytes().all(|digit| digit.is_ascii_digit()) {
+            return None;
+        }
+        // Printed with few digits the names are rounded as if they were numbers: 1.#J is an infinity.
+        let infinite = ["inf", "in", "io", "j"].iter().any(|start| kind.trim_end_matches('0') == *start);
+        return Some(if infinite { sign * f64::INFINITY } else { f64::NAN });
+    }
+    let of_nan = name.strip_prefix("nan").is_some_and(|rest| rest.starts_with('(') && rest.ends_with(')'));
+    (of_nan || name == "qnan" || name == "snan").then_some(f64::NAN)
 }
 
 /// Lines with their number, where a backslash at the end joins the next one.
@@ -134,7 +167,27 @@ impl Tally {
 
 #[cfg(test)]
 mod tests {
-    use super::{check_size, line_and_column, shortened};
+    use super::{check_size, end_lines, line_and_column, parse_number, shortened};
+
+    #[test]
+    fn numbers_that_are_none_have_many_names() {
+        for word in ["nan", "-nan", "NaN", "nan(ind)", "-nan(ind)", "nan(snan)", "-1.#IND00", "1.#QNAN", "1.#SNAN", "1.#IND", "+1.#QNAN0"] {
+            assert!(parse_number(word).is_some_and(f64::is_nan), "{word}");
+        }
+        for (word, value) in [("1.#INF", f64::INFINITY), ("-1.#INF00", f64::NEG_INFINITY), ("1.#J", f64::INFINITY), ("2.5", 2.5)] {
+            assert_eq!(parse_number(word), Some(value), "{word}");
+        }
+        for word in ["", "x", "1,5", "1.5.#INF", "3.1+e2", "nano", "#INF"] {
+            assert_eq!(parse_number(word), None, "{word}");
+        }
+    }
+
+    #[test]
+    fn every_system_s_line_ends_are_lines() {
+        let mut text = *b"a\rb\r\nc\n\rd\r";
+        end_lines(&mut text);
+        assert_eq!(&text, b"a\nb\r\nc\n\nd\n");
+    }
 
     #[test]
     fn files_that_memory_cannot_hold_are_refused() {

@@ -3,12 +3,13 @@
 mod integrator;
 mod tables;
 
-use self::tables::{luminaires, materials, meshes, objects, rgb, textures};
+use self::tables::{luminaires, materials, meshes, objects, point, rgb, textures};
 use crate::shared::film_size::FilmSize;
 use crate::shared::printing::print;
 use crate::shared::table::table;
 use luminaire::Result;
 use luminaire::film::Demand;
+use luminaire::glam::DVec3;
 use luminaire::gpu::specialization::KernelModel;
 use luminaire::reference::lost_light::lost_light;
 use luminaire::scene::{self, Environment, FilmSettings, Mesh, Projection, Scene};
@@ -58,6 +59,7 @@ pub fn run(options: &Options) -> Result<ExitCode> {
 /// The whole report on a scene.
 fn describe(scene: &Scene) -> String {
     let (low, high) = scene.world_bounds();
+    let (low, high) = (low + scene.origin, high + scene.origin);
     let stored: usize = scene.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
     let mut text = format!("{}\n\n", scene.path.display());
     text += &table(
@@ -74,7 +76,7 @@ fn describe(scene: &Scene) -> String {
                     if scene.meshes.len() == 1 { "mesh" } else { "meshes" }
                 ),
             ),
-            row("bounds", format!("{low:.4} to {high:.4}")),
+            row("bounds", format!("{low:.4} to {high:.4}{}", moved(scene))),
             row("sensor", sensor(scene)),
             row(
                 "film",
@@ -117,6 +119,15 @@ fn describe(scene: &Scene) -> String {
     text
 }
 
+/// By how much the scene was moved, if it was.
+fn moved(scene: &Scene) -> String {
+    if scene.origin == DVec3::ZERO {
+        return String::new();
+    }
+    let DVec3 { x, y, z } = scene.origin;
+    format!(" (rendered as if ({x} {y} {z}) were the origin: single precision holds more details there)")
+}
+
 fn row(name: &str, value: String) -> Vec<String> {
     vec![name.into(), value]
 }
@@ -135,7 +146,8 @@ fn sensor(scene: &Scene) -> String {
         };
         format!(", aperture of radius {} ({shape}), in focus at distance {}", lens.radius, lens.focus_distance)
     });
-    format!("at {}, looking at {}, up {}, {projection}{lens}", rgb(s.position), rgb(s.target), rgb(s.up))
+    let (position, target) = (point(scene, s.position), point(scene, s.target));
+    format!("at {position}, looking at {target}, up {}, {projection}{lens}", rgb(s.up))
 }
 
 /// A filter's name in scene files.
@@ -168,6 +180,7 @@ fn memory(scene: &Scene) -> String {
         size_of_val(&m.positions[..])
             + size_of_val(&m.normals[..])
             + size_of_val(&m.uvs[..])
+            + size_of_val(&m.colours[..])
             + size_of_val(&m.triangles[..])
     };
     let geometry: usize = scene.meshes.iter().map(|m| mesh(m)).sum();
@@ -225,6 +238,7 @@ mod tests {
         let estimator = Estimator { max_bounces: Some(4), ..Estimator::default() };
         let scene = Scene {
             path: "test.obj".into(),
+            origin: DVec3::ZERO,
             meshes: vec![
                 Mesh {
                     name: "one.obj".into(),

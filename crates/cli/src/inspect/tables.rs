@@ -1,11 +1,11 @@
 //! The tables of `luminaire inspect`.
 
-use luminaire::glam::Vec3;
+use luminaire::glam::{DVec3, Vec3};
 use luminaire::scene::{Luminaire, LuminaireTable, Material, Mesh, SampledLuminaire, Scene};
 
 /// Meshes and what they have.
 pub(super) fn meshes(scene: &Scene) -> Vec<Vec<String>> {
-    let head = ["name", "triangles", "vertices", "normals", "texture coordinates"].map(String::from).to_vec();
+    let head = ["name", "triangles", "vertices", "normals", "texture coordinates", "vertex colours"].map(String::from).to_vec();
     let mesh = |m: &Mesh| {
         let yes = |empty: bool| if empty { "no" } else { "yes" }.to_owned();
         vec![
@@ -14,6 +14,7 @@ pub(super) fn meshes(scene: &Scene) -> Vec<Vec<String>> {
             m.positions.len().to_string(),
             yes(m.normals.is_empty()),
             yes(m.uvs.is_empty()),
+            yes(m.colours.is_empty()),
         ]
     };
     std::iter::once(head).chain(scene.meshes.iter().map(|m| mesh(m))).collect()
@@ -131,7 +132,7 @@ pub(super) fn luminaires(scene: &Scene) -> Vec<Vec<String>> {
         match entry {
             SampledLuminaire::Impulse(Luminaire::Point { position, intensity }) => rows.push(vec![
                 "point".into(),
-                format!("at {}", rgb(*position)),
+                format!("at {}", point(scene, *position)),
                 format!("intensity {}", rgb(*intensity)),
                 percent(*pdf),
             ]),
@@ -159,6 +160,15 @@ pub(super) fn luminaires(scene: &Scene) -> Vec<Vec<String>> {
         rows.push(vec!["none: nothing in this scene emits".into()]);
     }
     rows
+}
+
+/// A point of the scene in the coordinates of its files.
+pub(super) fn point(scene: &Scene, p: Vec3) -> String {
+    if scene.origin == DVec3::ZERO {
+        return rgb(p);
+    }
+    let DVec3 { x, y, z } = p.as_dvec3() + scene.origin;
+    format!("({x:.6} {y:.6} {z:.6})")
 }
 
 /// Three numbers.

@@ -17,6 +17,10 @@ pub fn run(scene: &Scene, renderer: &mut Renderer, Pixel { x, y }: Pixel, sample
     let (radiance, vertices) = Reference::new(scene).vertices(y * scene.film.width + x, sample);
     let mut text =
         format!("pixel {x},{y}, sample {sample}, seed {}; the path in the reference\n\n", scene.settings.seed);
+    if scene.origin != DVec3::ZERO {
+        let DVec3 { x, y, z } = scene.origin;
+        text += &format!("  points are given from ({x} {y} {z}) of the files' coordinates\n\n");
+    }
     let head = ["ray", "from", "towards", "meets", "at t", "throughput", "radiance so far"].map(String::from);
     let rows = vertices.iter().enumerate().map(|(ray, vertex)| row(scene, ray, vertex));
     text += &table(2, &std::iter::once(head.into()).chain(rows).collect::<Vec<_>>());

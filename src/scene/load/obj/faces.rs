@@ -1,5 +1,6 @@
 //! The faces of an OBJ file, and the vertex normals that are made from them.
 
+use super::positions::Positions;
 use crate::scene::load::polygon::{self, Cut, Fault};
 use glam::{DVec3, Vec3};
 use std::collections::{BTreeMap, HashMap};
@@ -68,7 +69,7 @@ impl Faces {
 
     /// A normal for each corner of a face that has a smoothing group and no normals of its own: the mean over the faces of the
     /// group at that point; zero for other corners. Empty if there is no such face.
-    pub(super) fn normals_by_group(&self, positions: &[Vec3]) -> Vec<Vec3> {
+    pub(super) fn normals_by_group(&self, positions: &Positions) -> Vec<Vec3> {
         let wants = |corners: &[[u32; 3]], face: &Face| {
             face.smoothing_group > 0 && corners.iter().all(|[_, _, normal]| *normal == 0)
         };
@@ -101,7 +102,7 @@ impl Faces {
 
     /// A normal for each corner: the mean over the faces at that point whose normals differ from this face's by less than so many
     /// degrees; zero for none. Empty for 0 degrees.
-    pub(super) fn normals_by_angle(&self, positions: &[Vec3], degrees: f32) -> Vec<Vec3> {
+    pub(super) fn normals_by_angle(&self, positions: &Positions, degrees: f32) -> Vec<Vec3> {
         if degrees <= 0.0 {
             return Vec::new();
         }
@@ -124,7 +125,7 @@ impl Faces {
     /// a polygon and its line.
     pub(super) fn cut(
         &self,
-        positions: &[Vec3],
+        positions: &Positions,
         mut triangle: impl FnMut(u32, [[u32; 3]; 3]),
         mut fault: impl FnMut(Fault, usize),
     ) {
@@ -133,7 +134,7 @@ impl Faces {
             let mut cut = Cut { triangles: None, fault: None };
             if corners.len() > 3 {
                 outline.clear();
-                outline.extend(corners.iter().map(|[vertex, ..]| positions[*vertex as usize - 1].as_dvec3()));
+                outline.extend(corners.iter().map(|[vertex, ..]| positions.at(*vertex as usize - 1)));
                 cut = polygon::cut(&outline);
             }
             if let Some(what) = cut.fault {
@@ -161,14 +162,14 @@ impl Faces {
     }
 
     /// The corners at each point. Vertices at the same place are one point, however often the file lists it.
-    fn points(&self, positions: &[Vec3]) -> Points {
+    fn points(&self, positions: &Positions) -> Points {
         let mut index: HashMap<[u32; 3], u32> = HashMap::new();
-        let mut number = |position: &Vec3| {
+        let mut number = |position: Vec3| {
             let next = index.len() as u32;
             // Adding 0 makes -0 the same as 0.
-            *index.entry((*position + Vec3::ZERO).to_array().map(f32::to_bits)).or_insert(next)
+            *index.entry((position + Vec3::ZERO).to_array().map(f32::to_bits)).or_insert(next)
         };
-        let point_of: Vec<u32> = positions.iter().map(&mut number).collect();
+        let point_of: Vec<u32> = (0..positions.len()).map(|vertex| number(positions.rounded(vertex))).collect();
         let mut ends = vec![0; index.len()];
         drop(index);
         let point_at = |[vertex, ..]: &[u32; 3]| point_of[*vertex as usize - 1] as usize;
@@ -183,7 +184,7 @@ impl Faces {
         };
         let mut first = 0;
         for (face, (corners, _)) in (0..).zip(self.iter()) {
-            let point = |corner: usize| positions[corners[corner % corners.len()][0] as usize - 1].as_dvec3();
+            let point = |corner: usize| positions.at(corners[corner % corners.len()][0] as usize - 1);
             // Newell's method: the area vector of any polygon.
             let edge = |corner: usize| (point(corner) - point(0)).cross(point(corner + 1) - point(0));
             points.normals.push((1..corners.len() - 1).map(edge).sum::<DVec3>().normalize_or_zero());

@@ -1,12 +1,17 @@
 //! A mesh from an OBJ file: one vertex of each triple of position, texture coordinate and normal.
 
+mod colours;
+mod contents;
 mod faces;
+mod positions;
 mod statements;
 
+use super::far::FilePlace;
 use super::text_file::read_text;
 use crate::scene::{Mesh, Triangle};
 use crate::{Error, Result};
 use glam::{DVec3, Vec2, Vec3};
+use positions::Positions;
 use statements::ObjText;
 use std::collections::HashMap;
 use std::path::Path;
@@ -16,6 +21,8 @@ use std::path::Path;
 pub(super) struct Obj {
     /// [`Triangle::material`] is 0 for none, else 1 + an index into `materials`.
     pub mesh: Mesh,
+    /// Where the mesh lies in the file's coordinates.
+    pub place: FilePlace,
     /// Names of the materials, with the line of their first use.
     pub materials: Vec<(String, usize)>,
     /// What follows `mtllib`, with its line.
@@ -26,15 +33,24 @@ pub(super) struct Obj {
     pub warnings: Vec<String>,
 }
 
-/// Reads an OBJ file: all its groups in one mesh, polygons cut into triangles, zero-area triangles dropped. `smooth` makes vertex
-/// normals where the file has none: faces share them that differ by less than so many degrees.
+/// How an OBJ file is read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub(super) struct Reading {
+    /// Bits of an angle in degrees: vertex normals are made where the file has none; faces share them that differ by less.
+    pub smooth: Option<u32>,
+    /// The colours of its vertices are left out.
+    pub without_colours: bool,
+}
+
+/// Reads an OBJ file: all its groups in one mesh, polygons cut into triangles, zero-area triangles dropped.
 ///
 /// # Errors
 /// If the file cannot be read, a line of it is wrong, or no triangle is left.
-pub(super) fn read(path: &Path, smooth: Option<f32>) -> Result<Obj> {
+pub(super) fn read(path: &Path, how: Reading) -> Result<Obj> {
     // The text itself is given up here: what follows takes as much memory again.
     let mut text = statements::read(path, &read_text(path)?)?;
     let mut warnings = Vec::new();
+    let smooth = how.smooth.map(f32::from_bits);
     let has_normals = text.faces.corners.iter().any(|[_, _, normal]| *normal > 0);
     if smooth.is_some() && has_normals {
         let path = path.display();
@@ -46,23 +62,71 @@ pub(super) fn read(path: &Path, smooth: Option<f32>) -> Result<Obj> {
     };
     fill_gaps(&mut text, &made);
     drop(made);
-    let (mut mesh, dropped) = build(&mut text);
+    let vertices = text.positions.len();
+    let colours = std::mem::take(&mut text.colours).resolve(vertices, path, &mut warnings);
+    let colours = if how.without_colours { Vec::new() } else { colours };
+    let (mut mesh, place, lost) = build(&mut text, &colours);
     mesh.name = file_name(path);
     text.faults.warn(path, &mut warnings);
+    text.contents.warn(path, &mut warnings);
     if mesh.triangles.is_empty() {
-        let why = match dropped {
-            0 => "it has no face with 3 or more corners".to_owned(),
+        let why = match lost.no_area + lost.flattened {
+            0 => format!(
+                "it has no face with 3 or more corners (there are {} in it)",
+                text.contents.instead(vertices)
+            ),
+            n if lost.flattened > 0 => format!(
+                "all of its {n} triangles have zero area, {} of them because they are too small for single precision so far \
+                 from the middle of the file",
+                lost.flattened
+            ),
             n => format!("all of its {n} triangles have zero area"),
         };
         // What was skipped may be why.
         let skipped: String = warnings.iter().map(|warning| format!("\n  {warning}")).collect();
         return Err(Error::scene(path, format!("nothing to trace: {why}{skipped}")));
     }
-    if dropped > 0 {
-        warnings.push(format!("{}: {dropped} zero-area triangle(s) dropped", path.display()));
-    }
+    lost.warn(path, &mesh, &mut warnings);
     let ObjText { materials, libraries, without_uv, .. } = text;
-    Ok(Obj { mesh, materials, libraries, without_uv, warnings })
+    Ok(Obj { mesh, place, materials, libraries, without_uv, warnings })
+}
+
+/// Triangles that are not what the file says.
+#[derive(Debug, Default)]
+struct Lost {
+    /// Zero-area triangles, which are left out.
+    no_area: usize,
+    /// Triangles that single precision makes zero-area ones, which are left out.
+    flattened: usize,
+    /// Triangles of which it knows an edge to no better than a part in 64.
+    blurred: usize,
+}
+
+impl Lost {
+    /// An edge of fewer steps of single precision is blurred.
+    const STEPS: f64 = 64.0;
+    /// So many blurred triangles in a hundred are worth a warning: slivers are everywhere.
+    const PERCENT: usize = 1;
+
+    fn warn(&self, path: &Path, mesh: &Mesh, warnings: &mut Vec<String>) {
+        let path = path.display();
+        if self.no_area > 0 {
+            warnings.push(format!("{path}: {} zero-area triangle(s) dropped", self.no_area));
+        }
+        let (low, high) = mesh.bounds();
+        let reach = low.abs().max(high.abs()).max_element();
+        let step = reach * f32::EPSILON;
+        let cause = format!(
+            "the mesh reaches {reach:.3e} from its middle or origin, where single precision has steps of {step:.1e}; \
+             split it, or leave out what lies far off"
+        );
+        if self.flattened > 0 {
+            warnings.push(format!("{path}: {} triangle(s) are dropped that are too small: {cause}", self.flattened));
+        }
+        if 100 * self.blurred > Self::PERCENT * mesh.triangles.len() {
+            warnings.push(format!("{path}: details are lost, in {} triangle(s): {cause}", self.blurred));
+        }
+    }
 }
 
 /// Gives corners that lack a texture coordinate or a normal one of their own, unless none has any: (0, 0), and what was made for
@@ -86,29 +150,37 @@ fn fill_gaps(text: &mut ObjText, made: &[Vec3]) {
     }
 }
 
-/// The mesh of corners without gaps, and how many zero-area triangles are left out of it. Takes the faces out of `text`, and adds
-/// to its faults.
-fn build(text: &mut ObjText) -> (Mesh, usize) {
+/// The mesh of corners without gaps, where it lies, and what is left out of it. Takes the faces out of `text`, and adds to its faults.
+/// `colours` are those of the file's vertices, if it has any.
+fn build(text: &mut ObjText, colours: &[Vec3]) -> (Mesh, FilePlace, Lost) {
     let ObjText { positions, uvs, normals, faces, faults, .. } = text;
     let mut mesh = Mesh::default();
-    let mut vertices = Vertices::of(positions);
-    let (mut last, mut dropped) = (0, 0);
+    let mut vertices = Vertices::of(positions.len());
+    let (mut last, mut lost) = (0, Lost::default());
     let add = |material, corners: [[u32; 3]; 3]| {
         if material != last {
             vertices.end_sharing();
             last = material;
         }
-        let [a, b, c] = corners.map(|[vertex, ..]| positions[vertex as usize - 1].as_dvec3());
+        let places = corners.map(|[vertex, ..]| vertex as usize - 1);
+        let [a, b, c] = places.map(|vertex| positions.at(vertex));
         // Vertices of what is left out stay, and keep their numbers.
         let vertices = corners.map(|corner| vertices.number(corner));
         if (b - a).cross(c - a) == DVec3::ZERO {
-            dropped += 1;
-        } else {
-            mesh.triangles.push(Triangle { vertices, material });
+            let [a, b, c] = places.map(|vertex| positions.exact[vertex]);
+            match (b - a).cross(c - a) == DVec3::ZERO {
+                true => lost.no_area += 1,
+                false => lost.flattened += 1,
+            }
+            return;
         }
+        let least = [b - a, c - b, a - c].map(|edge| edge.abs().max_element()).into_iter().fold(f64::INFINITY, f64::min);
+        let reach = a.abs().max(b.abs()).max(c.abs()).max_element();
+        lost.blurred += usize::from(least < Lost::STEPS * f64::from(f32::EPSILON) * reach);
+        mesh.triangles.push(Triangle { vertices, material });
     };
     std::mem::take(faces).cut(positions, add, |fault, line| faults.polygon(fault, line));
-    mesh.positions = vertices.corners.iter().map(|[vertex, ..]| positions[*vertex as usize - 1]).collect();
+    mesh.positions = vertices.corners.iter().map(|[vertex, ..]| positions.rounded(*vertex as usize - 1)).collect();
     if !uvs.is_empty() {
         mesh.uvs = vertices.corners.iter().map(|[_, uv, _]| uvs[*uv as usize - 1]).collect();
     }
@@ -119,7 +191,20 @@ fn build(text: &mut ObjText) -> (Mesh, usize) {
     if mesh.normals.iter().all(|normal| *normal == Vec3::ZERO) {
         mesh.normals = Vec::new();
     }
-    (mesh, dropped)
+    if !colours.is_empty() {
+        mesh.colours = vertices.corners.iter().map(|[vertex, ..]| colours[*vertex as usize - 1]).collect();
+    }
+    (mesh, place(positions, &vertices), lost)
+}
+
+/// Where the mesh of these vertices lies.
+fn place(positions: &Positions, vertices: &Vertices) -> FilePlace {
+    let origin = positions.origin;
+    let exact = match origin == DVec3::ZERO {
+        true => Vec::new(),
+        false => vertices.corners.iter().map(|[vertex, ..]| positions.exact[*vertex as usize - 1]).collect(),
+    };
+    FilePlace { origin, exact }
 }
 
 /// The last part of a path.
@@ -141,8 +226,8 @@ struct Vertices {
 }
 
 impl Vertices {
-    fn of(positions: &[Vec3]) -> Self {
-        Vertices { corners: Vec::new(), first: vec![0; positions.len()], others: HashMap::new(), begin: 0 }
+    fn of(positions: usize) -> Self {
+        Vertices { corners: Vec::new(), first: vec![0; positions], others: HashMap::new(), begin: 0 }
     }
 
     /// Equal triples before and after this call are different vertices.

@@ -3,19 +3,24 @@
 //! Read here and not by a crate: `tobj` stops a whole file without naming the line, takes `l` lines for faces, leaves out what a
 //! corner lacks so that the normals of a mesh no longer belong to its vertices, and wants every vertex coloured if one is.
 
+use super::colours::Colours;
+use super::contents::Contents;
 use super::faces::Faces;
+use super::positions::Positions;
 use crate::scene::load::polygon::{Fault, MOST_CORNERS};
-use crate::scene::load::text_file::{Tally, logical_lines, shortened};
+use crate::scene::load::text_file::{Tally, logical_lines, parse_number, shortened};
 use crate::{Error, Result};
-use glam::{Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 use std::collections::HashMap;
 use std::path::Path;
 
 /// What an OBJ file says.
 #[derive(Debug, Default)]
 pub(super) struct ObjText {
-    /// `v` lines, divided by the weight if they have one; all finite.
-    pub positions: Vec<Vec3>,
+    /// `v` lines.
+    pub positions: Positions,
+    /// Colours of vertices.
+    pub colours: Colours,
     /// `vt` lines: the first two numbers, 0 for what is not there or not finite.
     pub uvs: Vec<Vec2>,
     /// `vn` lines, of any length; zero for what is not finite.
@@ -30,6 +35,8 @@ pub(super) struct ObjText {
     pub libraries: Vec<(String, usize)>,
     /// What is worth a warning.
     pub faults: Faults,
+    /// What else the file has.
+    pub contents: Contents,
 }
 
 /// What is wrong with an OBJ file and does not keep it from being loaded.
@@ -39,8 +46,6 @@ pub(super) struct Faults {
     tangled: Tally,
     not_flat: Tally,
     too_large: Tally,
-    unknown: Tally,
-    unknown_keyword: String,
     /// Indices into what the file has none of; in the order of [`KINDS`].
     dangling: [Tally; 3],
     bad_normals: Tally,
@@ -62,13 +67,11 @@ impl Faults {
     pub(super) fn warn(&self, path: &Path, warnings: &mut Vec<String>) {
         let too_large =
             format!("a polygon of more than {MOST_CORNERS} corners that is not convex; it is cut as if it were");
-        let unknown = format!("a line with the keyword `{}`, which is not modelled, is skipped", self.unknown_keyword);
         for (tally, what) in [
             (&self.short_faces, "a face with fewer than 3 corners is skipped"),
             (&self.tangled, "a polygon whose outline crosses or covers itself; its triangles are a guess"),
             (&self.not_flat, "a polygon whose corners do not lie in a plane; its triangles are a guess"),
             (&self.too_large, &too_large),
-            (&self.unknown, &unknown),
             (&self.dangling[1], "a texture coordinate index, but the file has none; ignored"),
             (&self.dangling[2], "a normal index, but the file has no normals; ignored"),
             (&self.bad_normals, "a normal that is not finite is ignored"),
@@ -101,6 +104,8 @@ pub(super) fn read(path: &Path, text: &str) -> Result<ObjText> {
     for (number, line) in logical_lines(text) {
         scan.line(number, &line)?;
     }
+    let ObjText { positions, faces, .. } = &mut scan.out;
+    positions.settle(faces.corners.iter().map(|[vertex, ..]| *vertex as usize - 1));
     Ok(scan.out)
 }
 
@@ -131,32 +136,28 @@ impl Scan<'_> {
             "v" => self.vertex(number, words)?,
             "vt" => self.texture_coordinate(number, words)?,
             "vn" => self.normal(number, words)?,
-            "f" => self.face(number, words)?,
+            // The older of the two words for a face.
+            "f" | "fo" => self.face(number, words)?,
             "usemtl" => self.material(number, rest),
             "mtllib" => self.out.libraries.push((rest.to_owned(), number)),
             "s" => self.smoothing(number, rest),
-            "o" | "g" | "l" | "p" => {}
+            "o" | "g" => {}
+            "#MRGB" => self.out.colours.paint(rest, number),
             comment if comment.starts_with('#') => {}
-            other => {
-                let faults = &mut self.out.faults;
-                if faults.unknown_keyword.is_empty() {
-                    faults.unknown_keyword = shortened(other).into_owned();
-                }
-                faults.unknown.add(number);
-            }
+            other => self.out.contents.add(other, number),
         }
         Ok(())
     }
 
-    fn number(&self, line: usize, word: &str) -> Result<f32> {
-        match word.parse() {
-            Ok(number) => Ok(number),
-            Err(_) => self.error(line, format!("`{}` is not a number", shortened(word))),
+    fn number(&self, line: usize, word: &str) -> Result<f64> {
+        match parse_number(word) {
+            Some(number) => Ok(number),
+            None => self.error(line, format!("`{}` is not a number", shortened(word))),
         }
     }
 
     fn vertex<'w>(&mut self, line: usize, words: impl Iterator<Item = &'w str>) -> Result<()> {
-        let mut kept = [""; 4];
+        let mut kept = [""; 8];
         let mut count = 0;
         for word in words {
             if let Some(slot) = kept.get_mut(count) {
@@ -164,10 +165,13 @@ impl Scan<'_> {
             }
             count += 1;
         }
-        // Beyond four numbers they are a vertex colour, which no material uses.
-        let used = match count {
-            3 | 4 => count,
-            6.. => 3,
+        // How many numbers are the place, and where among the others a colour is. Whether the fourth of seven is a weight the whole file tells.
+        let (used, colour) = match count {
+            3 | 4 => (count, 0..0),
+            6 => (3, 3..6),
+            7 => (3, 3..7),
+            8 => (4, 4..7),
+            9.. => (3, 3..6),
             _ => {
                 return self.error(
                     line,
@@ -180,11 +184,21 @@ impl Scan<'_> {
             *number = self.number(line, word)?;
         }
         let [x, y, z, w] = numbers;
-        let position = Vec3::new(x / w, y / w, z / w);
-        if !position.is_finite() {
+        let position = DVec3::new(x / w, y / w, z / w);
+        if !position.as_vec3().is_finite() {
             return self.error(line, format!("the vertex {} is not finite", shortened(&kept[..used].join(" "))));
         }
-        self.out.positions.push(position);
+        let vertex = self.out.positions.len();
+        self.out.colours.end_block(vertex);
+        if !colour.is_empty() {
+            let mut numbers = [None; 4];
+            let words = &kept[colour];
+            for (number, word) in numbers.iter_mut().zip(words) {
+                *number = parse_number(word);
+            }
+            self.out.colours.write(vertex, &numbers[..words.len()], line);
+        }
+        self.out.positions.exact.push(position);
         Ok(())
     }
 
@@ -194,7 +208,7 @@ impl Scan<'_> {
         for word in words {
             let number = self.number(line, word)?;
             if let Some(slot) = uv.get_mut(count) {
-                *slot = number;
+                *slot = number as f32;
             }
             count += 1;
         }
@@ -215,7 +229,7 @@ impl Scan<'_> {
         for word in words {
             let number = self.number(line, word)?;
             if let Some(slot) = numbers.get_mut(count) {
-                *slot = number;
+                *slot = number as f32;
             }
             count += 1;
         }
@@ -254,6 +268,7 @@ impl Scan<'_> {
 
     fn face<'w>(&mut self, line: usize, words: impl Iterator<Item = &'w str>) -> Result<()> {
         let first = self.out.faces.corners.len();
+        self.out.colours.end_block(self.out.positions.len());
         for word in words {
             let mut indices = [0; 3];
             let mut parts = word.split('/');

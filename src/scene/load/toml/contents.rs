@@ -12,19 +12,20 @@ use crate::scene::load::texture::MapFile;
 use crate::scene::{Luminaire, Object};
 use crate::{Error, Result};
 use ::toml::Spanned;
-use glam::{Affine3A, DAffine3, DMat3, DQuat, DVec3, Vec3};
+use glam::{DAffine3, DMat3, DQuat, DVec3};
 use std::collections::HashSet;
 use std::path::Path;
 
 impl File<'_> {
-    pub(super) fn luminaire(&self, table: &Spanned<LuminaireEntry>) -> Result<Luminaire> {
+    /// A `[[luminaire]]`, in a scene with this origin.
+    pub(super) fn luminaire(&self, table: &Spanned<LuminaireEntry>, origin: DVec3) -> Result<Luminaire> {
         let LuminaireEntry { kind, position, intensity, direction, irradiance } = table.get_ref();
         match (kind, position, intensity, direction, irradiance) {
             (LuminaireKind::Point, Some(position), Some(intensity), None, None) => {
-                Ok(Luminaire::Point { position: position.0, intensity: intensity.0 })
+                Ok(Luminaire::Point { position: (position.0 - origin).as_vec3(), intensity: intensity.0 })
             }
             (LuminaireKind::Infinite, None, None, Some(direction), Some(irradiance)) => {
-                let Some(direction) = direction.0.as_dvec3().try_normalize() else {
+                let Some(direction) = direction.rounded().as_dvec3().try_normalize() else {
                     return Err(self.error(table.span(), "the direction of the luminaire is the zero vector"));
                 };
                 Ok(Luminaire::Infinite { direction: direction.as_vec3(), irradiance: irradiance.0 })
@@ -84,16 +85,21 @@ impl File<'_> {
         Ok(MapDraft::File(MapFile::plain(vec![name.get_ref().clone()], self.folder(), at)))
     }
 
-    pub(super) fn object(&self, table: &Spanned<ObjectTable>, loader: &mut Loader) -> Result<Object> {
+    /// An `[[object]]`, and where it stands to every digit.
+    pub(super) fn object(&self, table: &Spanned<ObjectTable>, loader: &mut Loader) -> Result<(Object, DAffine3)> {
         let object = table.get_ref();
-        let object_to_world = self.transform(table)?;
+        let to_world = self.transform(table)?;
         let mesh_path = self.beside(object.mesh.get_ref());
         if !mesh_path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("obj")) {
             let what = other_formats::named(&mesh_path).map(|what| format!(" ({what})")).unwrap_or_default();
             let message = format!("`{}`: a mesh has to be an .obj file{what}", object.mesh.get_ref());
             return Err(self.error(object.mesh.span(), message));
         }
-        let mesh = loader.mesh(&mesh_path, object.smooth.map(|smooth| smooth.0)).map_err(|error| match error {
+        let how = obj::Reading {
+            smooth: object.smooth.map(|smooth| smooth.0.to_bits()),
+            without_colours: object.vertex_colours == Some(false),
+        };
+        let mesh = loader.mesh(&mesh_path, how).map_err(|error| match error {
             // Where the file is named helps more than where it is not.
             Error::Read { .. } => self.error(object.mesh.span(), error.to_string()),
             other => other,
@@ -110,30 +116,32 @@ impl File<'_> {
             })?),
         };
         let stem = || obj::file_name(Path::new(mesh_path.file_stem().unwrap_or_default()));
-        Ok(Object { name: object.name.clone().unwrap_or_else(stem), mesh, object_to_world, material })
+        let name = object.name.clone().unwrap_or_else(stem);
+        Ok((Object { name, mesh, object_to_world: to_world.as_affine3a(), material }, to_world))
     }
 
-    fn transform(&self, table: &Spanned<ObjectTable>) -> Result<Affine3A> {
+    fn transform(&self, table: &Spanned<ObjectTable>) -> Result<DAffine3> {
         let ObjectTable { translate, rotate, scale, matrix, .. } = table.get_ref();
         if matrix.is_some() && (translate.is_some() || rotate.is_some() || scale.is_some()) {
             return Err(self.error(table.span(), "give either `matrix`, or `translate`, `rotate` and `scale`"));
         }
-        let zero = Triple(Vec3::ZERO);
+        let zero = Triple(DVec3::ZERO);
         let to_world = match matrix {
             Some(rows) => {
-                let column = |c: usize| DVec3::new(rows[0][c].0.into(), rows[1][c].0.into(), rows[2][c].0.into());
-                DAffine3 { matrix3: DMat3::from_cols(column(0), column(1), column(2)), translation: column(3) }
+                let column = |c: usize| DVec3::new(rows[0][c].0, rows[1][c].0, rows[2][c].0);
+                let rounded = |c: usize| column(c).as_vec3().as_dvec3();
+                DAffine3 { matrix3: DMat3::from_cols(rounded(0), rounded(1), rounded(2)), translation: column(3) }
             }
             None => {
-                let angles = rotate.unwrap_or(zero).0.as_dvec3();
+                let angles = rotate.unwrap_or(zero).rounded().as_dvec3();
                 let [x, y, z] = angles.to_array().map(f64::to_radians);
                 let rotation = DQuat::from_rotation_z(z) * DQuat::from_rotation_y(y) * DQuat::from_rotation_x(x);
                 let scale = match scale {
                     None => DVec3::ONE,
                     Some(Scale::Even(scale)) => DVec3::splat(scale.0.into()),
-                    Some(Scale::Uneven(scale)) => scale.0.as_dvec3(),
+                    Some(Scale::Uneven(scale)) => scale.rounded().as_dvec3(),
                 };
-                let translation = translate.unwrap_or(zero).0.as_dvec3();
+                let translation = translate.unwrap_or(zero).0;
                 DAffine3::from_scale_rotation_translation(scale, rotation, translation)
             }
         };
@@ -145,6 +153,6 @@ impl File<'_> {
         if flat || !rounded.is_finite() || !rounded.inverse().is_finite() {
             return Err(self.error(table.span(), "the transform cannot be inverted: it flattens the object"));
         }
-        Ok(rounded)
+        Ok(to_world)
     }
 }

@@ -12,7 +12,7 @@ use super::text_file::read_bytes;
 use crate::scene::{Projection, RenderSettings, Scene, Sensor};
 use crate::{Error, Result};
 use file::File;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use std::path::Path;
 use tables::SceneFile;
 
@@ -33,11 +33,14 @@ impl File<'_> {
     fn build(&self, file: SceneFile) -> Result<Scene> {
         let film = self.film(file.film)?;
         let integrator = self.integrator(&file.integrator)?;
-        let mut luminaires = Vec::new();
-        for table in file.luminaire {
-            luminaires.push(self.luminaire(&table)?);
+        // What is wrong in this file is said before any other file is read; where the origin is, only those know.
+        let near = file.sensor.as_ref().map_or(DVec3::ZERO, |table| far_origin(table.get_ref().position.0));
+        if let Some(table) = &file.sensor {
+            self.sensor(table, near)?;
         }
-        let sensor = file.sensor.map(|table| self.sensor(&table)).transpose()?;
+        for table in &file.luminaire {
+            self.luminaire(table, near)?;
+        }
         let mut loader = Loader::new(self.materials(&file.material)?);
         loader.files.push(self.path.to_owned());
         if let Some(image) = file.environment.as_ref().and_then(|table| table.get_ref().image.as_ref()) {
@@ -47,13 +50,19 @@ impl File<'_> {
             None => None,
             Some(table) => self.environment(table, &mut loader.warnings)?,
         };
-        let mut objects = Vec::new();
+        let (mut objects, mut to_world) = (Vec::new(), Vec::new());
         for table in &file.object {
-            objects.push(self.object(table, &mut loader)?);
+            let (object, place) = self.object(table, &mut loader)?;
+            objects.push(object);
+            to_world.push(place);
         }
         if objects.is_empty() {
             return Err(Error::scene(self.path, "nothing to trace: the scene file has no [[object]]"));
         }
+        let origin = loader.settle(&mut objects, &to_world);
+        let sensor = file.sensor.map(|table| self.sensor(&table, origin)).transpose()?;
+        let luminaires: Result<Vec<_>> = file.luminaire.iter().map(|table| self.luminaire(table, origin)).collect();
+        let luminaires = luminaires?;
         let defaults = RenderSettings::default();
         let settings = RenderSettings {
             spp: file.render.spp.map_or(defaults.spp, |spp| spp.0),
@@ -64,6 +73,7 @@ impl File<'_> {
         let (materials, textures) = loader.finish_materials(&objects);
         let mut scene = Scene {
             path: self.path.to_owned(),
+            origin,
             meshes: loader.meshes,
             objects,
             materials,
@@ -91,6 +101,11 @@ impl File<'_> {
         scene.warnings.extend(scene.dark_because());
         Ok(scene)
     }
+}
+
+/// Where the checks of a sensor at `position` take the origin to be, before it is known: at the sensor, if that is far away.
+fn far_origin(position: DVec3) -> DVec3 {
+    if position.abs().max_element() > 1e4 { position } else { DVec3::ZERO }
 }
 
 /// The parser's words for types, as TOML users know them.

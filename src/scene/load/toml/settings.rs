@@ -2,6 +2,7 @@
 
 use super::file::File;
 use super::tables::{EnvironmentTable, FilmTable, IntegratorKind, IntegratorTable, SensorKind, SensorTable};
+use super::values::Triple;
 use crate::scene::load::{bare_mesh, environment};
 use crate::scene::{Environment, Estimator, EstimatorChanges, FilmSettings, Integrator, Lens, Projection, Sensor};
 use crate::{Error, Result};
@@ -25,8 +26,8 @@ impl File<'_> {
         Ok(FilmSettings { width, height, filter: table.filter, filter_radius })
     }
 
-    /// The `[sensor]`.
-    pub(super) fn sensor(&self, table: &Spanned<SensorTable>) -> Result<Sensor> {
+    /// The `[sensor]`, in a scene with this origin.
+    pub(super) fn sensor(&self, table: &Spanned<SensorTable>, origin: DVec3) -> Result<Sensor> {
         let of = table.get_ref();
         let projection = match (of.kind, &of.fov, &of.height) {
             (SensorKind::Perspective, Some(fov), None) => Projection::Perspective { fov: fov.get_ref().0 },
@@ -48,11 +49,11 @@ impl File<'_> {
             }
         };
         let sensor = Sensor {
-            position: of.position.0,
-            target: of.target.0,
-            up: of.up.map_or(Vec3::Y, |up| up.0),
+            position: (of.position.0 - origin).as_vec3(),
+            target: (of.target.0 - origin).as_vec3(),
+            up: of.up.map_or(Vec3::Y, Triple::rounded),
             projection,
-            lens: self.lens(of)?,
+            lens: None,
         };
         let view = sensor.target.as_dvec3() - sensor.position.as_dvec3();
         let up = sensor.up.as_dvec3();
@@ -63,13 +64,14 @@ impl File<'_> {
         } else if up.normalize().cross(view.normalize()).length() < 1e-6 {
             "the sensor's up is parallel to its line of sight; choose another up"
         } else {
-            return Ok(sensor);
+            let lens = self.lens(of, view.length() as f32)?;
+            return Ok(Sensor { lens, ..sensor });
         };
         Err(self.error(table.span(), wrong))
     }
 
-    /// The sensor's lens, if its aperture is open.
-    fn lens(&self, table: &SensorTable) -> Result<Option<Lens>> {
+    /// The sensor's lens, if its aperture is open; `to_target` is the distance at which it is in focus unless something else is said.
+    fn lens(&self, table: &SensorTable, to_target: f32) -> Result<Option<Lens>> {
         let SensorTable { aperture, focus_distance, blades, blade_rotation, .. } = table;
         let Some(aperture) = aperture else {
             let needs = [
@@ -89,7 +91,6 @@ impl File<'_> {
         if radius == 0.0 {
             return Ok(None);
         }
-        let to_target = (table.target.0.as_dvec3() - table.position.0.as_dvec3()).length() as f32;
         Ok(Some(Lens {
             radius,
             focus_distance: focus_distance.as_ref().map_or(to_target, |distance| distance.get_ref().0),

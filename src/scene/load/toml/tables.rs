@@ -1,7 +1,7 @@
 //! The tables of a scene file, as `scenes/README.md` describes them.
 
 use super::values::{
-    Angle, Blades, Bounces, Colour, Eta, Exponent, Exposure, FilterRadius, Finite, Fov, NotNegative, Pixels, Positive,
+    Angle, Blades, Bounces, Colour, Eta, Exact, Exponent, Exposure, FilterRadius, Finite, Fov, NotNegative, Pixels, Positive,
     Probability, Samples, Triple, Unit,
 };
 use crate::scene::{AreaSampling, Directions, Extinction, Filter, LightSampling, Sampler};
@@ -105,10 +105,11 @@ pub(super) struct ObjectTable {
     pub name: Option<String>,
     pub material: Option<Spanned<String>>,
     pub smooth: Option<Angle>,
+    pub vertex_colours: Option<bool>,
     pub translate: Option<Triple>,
     pub rotate: Option<Triple>,
     pub scale: Option<Scale>,
-    pub matrix: Option<[[Finite; 4]; 3]>,
+    pub matrix: Option<[[Exact; 4]; 3]>,
 }
 
 #[derive(Deserialize)]

@@ -22,10 +22,22 @@ type Checked<T> = std::result::Result<T, &'static str>;
 #[serde(try_from = "f64")]
 pub(super) struct Finite(pub f32);
 
-/// A point or a vector.
+/// A finite number, of which every digit counts.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(try_from = "f64")]
+pub(super) struct Exact(pub f64);
+
+/// A point or a vector, as the file has it: a point may lie so far from the origin that every digit counts.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(try_from = "[f64; 3]")]
-pub(super) struct Triple(pub Vec3);
+pub(super) struct Triple(pub DVec3);
+
+impl Triple {
+    /// In single precision.
+    pub(super) fn rounded(self) -> Vec3 {
+        self.0.as_vec3()
+    }
+}
 
 /// Linear RGB, not negative.
 #[derive(Debug, Clone, Copy, Deserialize)]
@@ -109,11 +121,18 @@ impl TryFrom<f64> for Finite {
     }
 }
 
+impl TryFrom<f64> for Exact {
+    type Error = &'static str;
+    fn try_from(number: f64) -> Checked<Self> {
+        (number as f32).is_finite().then_some(Exact(number)).ok_or("expected a finite number below 3e38")
+    }
+}
+
 impl TryFrom<[f64; 3]> for Triple {
     type Error = &'static str;
     fn try_from(numbers: [f64; 3]) -> Checked<Self> {
-        let vector = DVec3::from(numbers).as_vec3();
-        Some(vector).filter(|v| v.is_finite()).map(Triple).ok_or("expected three finite numbers below 3e38")
+        let vector = DVec3::from(numbers);
+        Some(vector).filter(|v| v.as_vec3().is_finite()).map(Triple).ok_or("expected three finite numbers below 3e38")
     }
 }
 
