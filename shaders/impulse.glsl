@@ -35,13 +35,22 @@ struct Impulses {
 
 float mean(vec3 v) { return (v.x + v.y + v.z) * (1.0 / 3.0); }
 
+// Whether what scatters lies under a smooth dielectric, not beside it.
+bool is_coated(Material material) {
+    if (!COATS || material.eta == MIRROR || material.reflection == vec3(0.0)) return false;
+    return material.lambert != vec3(0.0) || (GLOSSY && material.glossy != vec3(0.0));
+}
+
 Impulses impulses(Surfel s, Material material, vec3 wo) {
     Impulses i = Impulses(vec3(0.0), vec3(0.0), s.shading_normal, 0.0, 0.0);
     if (!IMPULSES) return i;
     vec3 rest = material.lambert;
     if (GLOSSY) rest += material.glossy;
     i.reflected = material.reflection;
-    if (DIELECTRICS && material.eta != MIRROR) i.eta = s.front ? material.eta : 1.0 / material.eta;
+    if (DIELECTRICS && material.eta != MIRROR) {
+        // Nobody is inside of what transmits nothing.
+        i.eta = s.front || material.transmission == vec3(0.0) ? material.eta : 1.0 / material.eta;
+    }
     // A direction on the wrong side of the triangle: the triangle's own normal instead.
     if (VERTEX_NORMALS) {
         bool wrong = dot(reflect_direction(wo, i.normal), s.geometric_normal) <= 0.0;
@@ -53,6 +62,7 @@ Impulses impulses(Surfel s, Material material, vec3 wo) {
         i.reflected *= f;
         i.transmitted = material.transmission * (1.0 - f);
     }
+    if (is_coated(material)) rest *= 1.0 - i.reflected;
     float impulse = mean(i.reflected + i.transmitted);
     float other = mean(rest);
     if (impulse > 0.0) {

@@ -279,6 +279,7 @@ fn twins() -> Vec<(&'static str, f64)> {
         ("OBJECT_TEXELS", texels(size_of::<layout::Object>())),
         ("MATERIAL_TEXELS", texels(size_of::<layout::Material>())),
         ("LUMINAIRE_TEXELS", texels(size_of::<layout::Luminaire>())),
+        ("TEXTURE_TEXELS", texels(size_of::<layout::Texture>())),
         ("NODE_TEXELS", texels(size_of::<CwBvhNode>())),
         ("STACK_SIZE", STACK_SIZE as f64),
         ("MOST_RADIANCE", MOST_RADIANCE),

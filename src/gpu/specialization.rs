@@ -4,7 +4,7 @@ use crate::scene::{
     AreaSampling, Directions, Extinction, Integrator, LightSampling, Luminaire, LuminaireTable, Material, Projection,
     SampledLuminaire, Sampler, Scene,
 };
-use glam::{Affine3A, Vec3};
+use glam::{Affine2, Affine3A, Vec3};
 
 macro_rules! features {
     ($($(#[$doc:meta])* $name:ident: $text:literal,)*) => {
@@ -58,6 +58,10 @@ features! {
     textures: "textures",
     /// Some material is not opaque everywhere.
     holes: "holes",
+    /// Some material has a base under a smooth dielectric.
+    coats: "coats",
+    /// Some map is moved or scaled.
+    map_transforms: "map transforms",
 }
 
 /// The kernel that runs: the scene's features, and the choices of its integrator.
@@ -98,6 +102,8 @@ impl KernelModel {
                 [m.maps.ambient, m.maps.lambert, m.maps.glossy, m.maps.emission].iter().any(Option::is_some)
             }),
             holes: material(Material::has_holes),
+            coats: material(Material::is_coated),
+            map_transforms: scene.textures.iter().any(|texture| texture.transform != Affine2::IDENTITY),
         };
         KernelModel {
             features,

@@ -19,8 +19,13 @@ pub const SURE_THROUGHPUT: f64 = 0.4;
 /// The probability that a path goes on: one minus the extinction coefficient (slide "Extinction Coefficient"), for the channel
 /// that loses least. Fresnel aside, so that it is the same for all directions.
 pub fn survival(surfel: &Surfel) -> f64 {
-    let impulse = surfel.reflection.max(surfel.transmission);
-    (surfel.lambert + surfel.glossy + impulse).max_element().min(MAX_SURVIVAL)
+    let base = surfel.lambert + surfel.glossy;
+    let albedo = if surfel.is_coated() {
+        surfel.reflection.max(base + surfel.transmission)
+    } else {
+        base + surfel.reflection.max(surfel.transmission)
+    };
+    albedo.max_element().min(MAX_SURVIVAL)
 }
 
 /// How a path goes on.

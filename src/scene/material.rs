@@ -5,8 +5,8 @@ use glam::Vec3;
 /// The surface's scattering and emission: normalised Blinn-Phong (slide "Surface Element Class") and impulses (slides "Impulse
 /// Reflection", "Adding Transmission").
 ///
-/// `lambert + glossy + max(reflection, transmission) <= 1` in every channel, each times the largest texel of its map; the loader
-/// scales down what exceeds it and warns.
+/// In every channel, each times the largest texel of its map, `lambert + glossy + max(reflection, transmission) <= 1`; for a coated base
+/// ([`Material::is_coated`]) `reflection <= 1` and `lambert + glossy + transmission <= 1`. The loader scales down what exceeds it and warns.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {
     /// The name in the MTL or scene file.
@@ -29,7 +29,7 @@ pub struct Material {
     /// Albedo of the impulse transmission, times one minus Fresnel's reflectance (`Tf`); zero without `eta`.
     pub transmission: Vec3,
     /// Index of refraction of what lies behind the outward normal over that in front of it (`Ni`), 0.01 to 100; none: no
-    /// Fresnel, no transmission.
+    /// Fresnel, no transmission. Where nothing is transmitted nobody is behind: it is the same from both sides.
     pub eta: Option<f32>,
     /// Probability with which a path takes an impulse where there is something else too, in (0, 1); none: the impulses' share of the
     /// albedo at that angle. It changes the noise, never the mean.
@@ -80,6 +80,13 @@ impl Material {
     /// Whether anything is mirrored or refracted.
     pub fn has_impulse(&self) -> bool {
         self.reflection != Vec3::ZERO || (self.transmission != Vec3::ZERO && self.eta.is_some())
+    }
+
+    /// Whether what is diffuse and glossy lies under a smooth dielectric: then it gets, and gives away, what Fresnel does not reflect. A
+    /// mirror without `eta` lies beside it instead.
+    pub fn is_coated(&self) -> bool {
+        let base = self.lambert != Vec3::ZERO || self.glossy != Vec3::ZERO;
+        base && self.reflection != Vec3::ZERO && self.eta.is_some()
     }
 
     /// Whether a ray may pass the surface as if it were not there.

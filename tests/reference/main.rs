@@ -3,11 +3,13 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod coats;
 mod environment;
 mod estimators;
 mod impulses;
 mod intersection;
 mod light;
+mod luminaire_choice;
 mod sampling;
 mod scattering;
 mod sensor;
