@@ -7,7 +7,7 @@
 /// By Simpson's rule, to 1e-9: Duntley's closed form (1942) cancels where `eta` is nearly 1.
 pub fn coat_transmittance(eta: f64) -> f64 {
     if eta < 1.0 {
-        return coat_transmittance(1.0 / eta) / (eta * eta);
+        return coat_transmittance(1.0 / eta) * (eta * eta);
     }
     const STEPS: u32 = 512;
     // The cosine is s^2, so that steps are fine near grazing, where all happens if the index is nearly 1.

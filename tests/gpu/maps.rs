@@ -50,17 +50,13 @@ fn lookups_of_placed_maps_match() {
     for map in 0..scene.textures.len() as u32 {
         let mut look = |u: f32, v: f32| calls.push([[map, u.to_bits(), v.to_bits(), 0], [0; 4]]);
         (0..2000).for_each(|_| look(rng.random_range(-3.0..4.0), rng.random_range(-3.0..4.0)));
-        [(f32::NAN, 0.3), (0.6, f32::INFINITY), (f32::MAX, -f32::MAX)].into_iter().for_each(|(u, v)| look(u, v));
+        [(f32::NAN, 0.3), (0.6, f32::INFINITY)].into_iter().for_each(|(u, v)| look(u, v));
     }
     on_every_backend(|backend| {
         let probe = Probe::new(&backend.device, &scene, backend.ray_query).expect("a probe");
         for (arguments, result) in calls.iter().zip(probe.call(Function::TextureAt, &calls).expect("the probe runs")) {
             let texture = &scene.textures[arguments[0][0] as usize];
             let [u, v] = [1, 2].map(|i| f64::from(f32::from_bits(arguments[0][i])));
-            // Where the transform overflows in single precision only.
-            if u.abs() > 1e30 && texture.transform != Affine2::IDENTITY {
-                continue;
-            }
             let expected = bilinear(texture, DVec2::new(u, v)).to_array();
             // Up to 40 times the size of the picture, rounded three times; and the texels are 4 at most.
             let tolerance = 4.0 * (40.0 * 3.6e-7 * f64::from(texture.width.max(texture.height)) + 3.6e-7);

@@ -27,6 +27,8 @@ fn the_base_scatters_what_the_coat_does_not_reflect() {
         (1.33, 1.0, 0.25, true),
         (1.33, 1.0, 0.25, false),
         (2.4, 0.75, 0.0, true),
+        (1.0 / 1.5, 1.0, 0.5, true),
+        (1.0 / 1.5, 1.0, 0.5, false),
         (1.001, 1.0, 0.0, true),
     ] {
         let white = flat_surfel(DVec3::splat(1.0 - transmission), DVec3::ZERO, 0.0);
@@ -49,7 +51,7 @@ fn the_base_scatters_what_the_coat_does_not_reflect() {
     assert!((directional_albedo(&mirror, tilted(80.0)) - 0.8).abs() < 1e-3);
 }
 
-/// A glossy base keeps `1 - F` of what it scatters at most, and no coat that transmits light makes more of it than there was.
+/// A glossy base keeps `1 - F` of what it scatters at most; a narrow lobe, nearly that.
 #[test]
 fn a_glossy_base_keeps_no_more_than_enters() {
     for m in EXPONENTS {
@@ -59,9 +61,9 @@ fn a_glossy_base_keeps_no_more_than_enters() {
             let (f, alone) = (fresnel(1.5, wo.z), directional_albedo(&bare, wo));
             let found = directional_albedo(&coated(1.5, 1.0, bare), wo);
             assert!(found <= alone * (1.0 - f) + 1e-9, "m = {m}, {degrees} degrees: {found}");
-            // A narrow lobe is all at one angle.
+            // A narrow lobe is nearly all at one angle.
             if m > 900.0 {
-                assert!(found >= 0.97 * alone * (1.0 - f), "m = {m}, {degrees} degrees: {found} of {alone}");
+                assert!(found >= 0.94 * alone * (1.0 - f), "m = {m}, {degrees} degrees: {found} of {alone}");
             }
         }
     }
