@@ -13,6 +13,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "texture.glsl"
 #include "intersect.glsl"
 #include "surfel.glsl"
+#include "impulse.glsl"
 #include "sensor.glsl"
 #include "batch.glsl"
 
@@ -41,12 +42,19 @@ void main() {
         if (!closest_hit(origin, direction, INFINITY, salt, hit)) continue;
         Surfel s = surfel(hit, -direction);
         Material material = material_at(s);
-        albedo += material.lambert;
-        if (GLOSSY) albedo += material.glossy;
-        // Of a dielectric either the one or the other.
-        if (IMPULSES) albedo += max(material.reflection, DIELECTRICS ? material.transmission : vec3(0.0));
+        vec3 base = material.lambert;
+        if (GLOSSY) base += material.glossy;
+        if (is_coated(material)) {
+            // As from straight above.
+            base += material.transmission;
+            albedo += base + material.reflection * fresnel(material.eta, 1.0) * (1.0 - base);
+        } else {
+            albedo += base;
+            // Of a dielectric either the one or the other.
+            if (IMPULSES) albedo += max(material.reflection, DIELECTRICS ? material.transmission : vec3(0.0));
+        }
         normal += s.shading_normal;
-        depth += dot(s.position - frame.position.xyz, frame.forward.xyz);
+        depth += dot(s.position - frame.position.xyz, frame.forward.xyz) + frame.start;
         hits++;
     }
     aovs[id.y * batch.tile_width + id.x] =

@@ -8,12 +8,29 @@ float glossy_share(Material material) {
     return glossy > 0.0 ? glossy / (glossy + mean(material.lambert)) : 0.0;
 }
 
+// What a coat makes of the base's lobes (Surfel::coat in src/reference/bsdf.rs): a factor to Lambert's, and one to the glossy one.
+void coat(Surfel s, Material material, vec3 wo, vec3 wi, out vec3 lambert, out vec3 glossy) {
+    Impulses i = impulses(s, material, wo);
+    vec3 outward = 1.0 - i.reflected;
+    vec3 inward = 1.0 - impulses(s, material, wi).reflected;
+    float average = material.coat_transmittance / (i.eta == material.eta ? 1.0 : material.eta * material.eta);
+    lambert = outward * inward / (1.0 - material.reflection * (1.0 - average));
+    glossy = min(outward, inward);
+}
+
 // f(wo, wi), without the cosine, in rgb; w: the density per steradian with which bsdf_direction gives wi. All zero where the two
 // normals disagree about the side of wi: light would leak through walls.
 vec4 bsdf_and_pdf(Surfel s, Material material, vec3 wo, vec3 wi) {
     float cosine = dot(s.shading_normal, wi);
     if (dot(s.geometric_normal, wi) <= 0.0 || cosine <= 0.0) return vec4(0.0);
     vec3 f = material.lambert * (1.0 / PI);
+    vec3 glossy = material.glossy;
+    if (is_coated(material)) {
+        vec3 lambert_coat, glossy_coat;
+        coat(s, material, wo, wi, lambert_coat, glossy_coat);
+        f *= lambert_coat;
+        glossy *= glossy_coat;
+    }
     float pdf = DIRECTIONS == DIRECTIONS_UNIFORM ? 0.5 / PI : cosine * (1.0 / PI);
     if (GLOSSY && material.glossy != vec3(0.0)) {
         vec3 h = normalize(wi + wo);
@@ -23,7 +40,7 @@ vec4 bsdf_and_pdf(Surfel s, Material material, vec3 wo, vec3 wi) {
         float log_cosine = sine2 < 0.5 ? 0.5 * log_one_minus(sine2) : log(max(dot(s.shading_normal, h), 1e-18));
         float m = material.exponent;
         float lobe = exp(m * log_cosine);
-        f += material.glossy * (material.normalisation * lobe);
+        f += glossy * (material.normalisation * lobe);
         if (DIRECTIONS == DIRECTIONS_BSDF) {
             float half_vector = (m + 1.0) * (0.5 / PI) * lobe / (4.0 * abs(dot(wo, h)));
             pdf = mix(pdf, half_vector, glossy_share(material));

@@ -38,6 +38,12 @@ struct Impulses {
 
 float mean(vec3 v) { return (v.x + v.y + v.z) * (1.0 / 3.0); }
 
+// Whether what scatters lies under a smooth dielectric, not beside it.
+bool is_coated(Material material) {
+    if (!COATS || material.eta == MIRROR || material.reflection == vec3(0.0) || (THIN && material.thin != 0u)) return false;
+    return material.lambert != vec3(0.0) || (GLOSSY && material.glossy != vec3(0.0));
+}
+
 Impulses impulses(Surfel s, Material material, vec3 wo) {
     Impulses i = Impulses(vec3(0.0), vec3(0.0), s.shading_normal, 0.0, 0.0);
     if (!IMPULSES) return i;
@@ -45,8 +51,10 @@ Impulses impulses(Surfel s, Material material, vec3 wo) {
     if (GLOSSY) rest += material.glossy;
     i.reflected = material.reflection;
     bool thin = THIN && material.thin != 0u;
-    // A sheet lets light through as if it were not there.
-    if (DIELECTRICS && material.eta != MIRROR) i.eta = thin ? 1.0 : s.front ? material.eta : 1.0 / material.eta;
+    if (DIELECTRICS && material.eta != MIRROR) {
+        // A sheet lets light through as if it were not there, and nobody is inside of what transmits nothing.
+        i.eta = thin ? 1.0 : s.front || material.transmission == vec3(0.0) ? material.eta : 1.0 / material.eta;
+    }
     // A direction on the wrong side of the triangle, or all reflected: the triangle's own normal instead. Total reflection about interpolated
     // normals would keep paths for ever (src/reference/impulse.rs).
     if (VERTEX_NORMALS) {
@@ -60,6 +68,7 @@ Impulses impulses(Surfel s, Material material, vec3 wo) {
         i.reflected *= f;
         i.transmitted = material.transmission * (1.0 - f);
     }
+    if (is_coated(material)) rest *= 1.0 - i.reflected;
     float impulse = mean(i.reflected + i.transmitted);
     float other = mean(rest);
     if (impulse > 0.0) {

@@ -51,6 +51,7 @@ float triangle_density(vec3 p, vec3 wi, Hit hit, float area_density) {
     float scale = largest(abs(normal));
     float double_area = scale * length(normal / scale);
     float area = 0.5 * double_area;
+    area_density = max(area_density, frame.least_probability / area);
     vec3 v[3];
     float omega;
     if (is_near(p, a, b, c, area, v, omega)) return area_density * area / omega;
@@ -79,7 +80,7 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, vec3 throughput, uvec4 r
     vec3 target = light.a;
     vec3 wi = target;
     vec3 incident = light.radiance / light.probability;
-    float density = 0.0;      // per steradian; 0 where no other ray can find the light
+    float density = 0.0;      // per steradian, for the power heuristic; 0 where no other ray can find the light
     float target_error = light.position_error;
     float t_max = INFINITY;
     if (surroundings) {
@@ -100,7 +101,7 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, vec3 throughput, uvec4 r
             target = s.position + t * wi;
             target_error += gamma(8.0) * (largest(abs(s.position)) + largest(abs(light.a)));
             incident *= omega;
-            density = light.probability / omega;
+            density = light.ideal_probability / omega;
             // The plane may be missed where the triangle is seen edge-on.
             if (!(t > 0.0 && t < 1e30)) return vec3(0.0);
         } else {
@@ -116,7 +117,7 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, vec3 throughput, uvec4 r
             if (area) {
                 float cosine = light.area * abs(dot(light.normal, wi));
                 incident *= cosine;
-                density = light.probability * distance2 / cosine;
+                density = light.ideal_probability * distance2 / cosine;
             }
         }
     }

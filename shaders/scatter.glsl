@@ -7,7 +7,8 @@ const float SURE_THROUGHPUT = 0.4;
 float survival(Material material) {
     vec3 albedo = material.lambert;
     if (GLOSSY) albedo += material.glossy;
-    if (IMPULSES) albedo += max(material.reflection, DIELECTRICS ? material.transmission : vec3(0.0));
+    if (is_coated(material)) albedo = max(material.reflection, albedo + material.transmission);
+    else if (IMPULSES) albedo += max(material.reflection, DIELECTRICS ? material.transmission : vec3(0.0));
     return min(largest(albedo), 1.0);
 }
 
@@ -48,7 +49,7 @@ Scattering scatter(Surfel s, Material material, Impulses i, vec3 wo, uvec4 rando
     vec4 f = bsdf_and_pdf(s, material, wo, wi);
     f.w *= rest;
     // Without a second lobe the cosine cancels exactly.
-    bool lambert_only = !GLOSSY && DIRECTIONS != DIRECTIONS_UNIFORM;
+    bool lambert_only = !GLOSSY && !COATS && DIRECTIONS != DIRECTIONS_UNIFORM;
     vec3 weight = vec3(0.0);
     if (lambert_only) weight = f.w > 0.0 ? material.lambert / rest : vec3(0.0);
     else if (f.w > 0.0) weight = f.rgb * (dot(s.shading_normal, wi) / f.w);

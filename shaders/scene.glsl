@@ -14,16 +14,18 @@ layout(constant_id = 9) const bool TEXTURES = true;            // some material 
 layout(constant_id = 10) const bool HOLES = true;              // some material is not opaque everywhere
 layout(constant_id = 11) const bool THIN = true;                // some material is a sheet whose two sides are one surface
 layout(constant_id = 12) const bool VERTEX_COLOURS = true;     // some mesh has vertex colours
-layout(constant_id = 13) const bool ORTHOGRAPHIC = false;
-layout(constant_id = 14) const bool SOBOL = false;
+layout(constant_id = 13) const bool COATS = true;              // some material has a base under a smooth dielectric
+layout(constant_id = 14) const bool MAP_TRANSFORMS = true;     // some map is moved or scaled
+layout(constant_id = 15) const bool ORTHOGRAPHIC = false;
+layout(constant_id = 16) const bool SOBOL = false;
 
 // The integrator's choices (src/scene/estimator.rs).
-layout(constant_id = 15) const bool SIMPLE = false;            // the simple ray tracer instead of the path tracer
-layout(constant_id = 16) const uint LIGHT_SAMPLING = 2u;
-layout(constant_id = 17) const bool SOLID_ANGLE = true;        // near triangles are sampled by solid angle
-layout(constant_id = 18) const uint DIRECTIONS = 2u;
-layout(constant_id = 19) const uint EXTINCTION = 3u;
-layout(constant_id = 20) const bool THRESHOLD = false;         // paths of small albedo end
+layout(constant_id = 17) const bool SIMPLE = false;            // the simple ray tracer instead of the path tracer
+layout(constant_id = 18) const uint LIGHT_SAMPLING = 2u;
+layout(constant_id = 19) const bool SOLID_ANGLE = true;        // near triangles are sampled by solid angle
+layout(constant_id = 20) const uint DIRECTIONS = 2u;
+layout(constant_id = 21) const uint EXTINCTION = 3u;
+layout(constant_id = 22) const bool THRESHOLD = false;         // paths of small albedo end
 
 const uint LIGHT_NONE = 0u;
 const uint LIGHT_DIRECT = 1u;
@@ -40,7 +42,7 @@ const uint EXTINCTION_THROUGHPUT = 3u;
 const int FILTER_TEXELS = 65;
 
 layout(set = 0, binding = 0, std140) uniform Frame {
-    vec4 position;                        // eye point
+    vec4 position;                        // eye point, or a point `start` in front of it
     vec4 forward;                         // unit line of sight
     vec4 right;                           // to the right edge of the picture: at distance 1, or of the parallel rays
     vec4 up;                              // to the upper edge
@@ -60,6 +62,9 @@ layout(set = 0, binding = 0, std140) uniform Frame {
     uint environment_width;               // in texels
     uint environment_height;
     float environment_rotation;           // in turns
+    float least_probability;              // with which an emissive triangle is chosen
+    float start;                          // distance along the line of sight at which rays start, where the eye point is too far away
+    float lens_at_start;                  // what is left there of a ray's offset on the lens
     vec4 filter_table[FILTER_TEXELS];     // inverse cumulative distribution of the pixel filter: 257 knots, in pixels
 } frame;
 
@@ -93,6 +98,7 @@ struct Material {
     uint opacity_map;             // its alpha multiplies the opacity
     uint one_sided;               // 1 if only the outward side emits
     uint thin;                    // 1 if it is a sheet whose two sides are one surface
+    float coat_transmittance;     // where COATS: of even light from outside, what reaches the base
 };
 // What impulse_probability is where the albedos say how probable an impulse is.
 const float BY_ALBEDOS = -1.0;
@@ -108,6 +114,7 @@ const uint SURROUNDINGS = 3u;
 // Without its slot of the alias table.
 struct Luminaire {
     vec3 a;                  // point: position; infinite: unit vector towards the light; area: first corner
+    float ideal_probability; // of being chosen, for the power heuristic: what `triangle_density` has too
     vec3 b;                  // area: second corner
     float area;              // of the triangle
     vec3 c;                  // area: third corner
@@ -115,7 +122,7 @@ struct Luminaire {
     vec3 normal;             // area: unit outward normal
     float one_sided;         // area: 1 if only the outward side emits
     vec3 radiance;           // intensity, irradiance or radiance (without its texture)
-    float probability;       // of being chosen
+    float probability;       // of being chosen, to the last random number
     uint kind;
     uint triangle;           // area: index into `triangles`
     uint material;           // area
@@ -124,7 +131,7 @@ layout(set = 0, binding = 6) uniform usamplerBuffer luminaires;
 
 // Texture coordinates, two texels a triangle: those of the first two corners, then the third's.
 layout(set = 0, binding = 9) uniform usamplerBuffer uvs;
-// One texel a texture.
+// Three texels a texture.
 layout(set = 0, binding = 10) uniform usamplerBuffer textures;
 // Two texels of a texture in one: four half floats each.
 layout(set = 0, binding = 11) uniform usamplerBuffer texels;
@@ -146,6 +153,7 @@ const int TRIANGLE_TEXELS = 3;
 const int OBJECT_TEXELS = 7;
 const int MATERIAL_TEXELS = 8;
 const int LUMINAIRE_TEXELS = 7;
+const int TEXTURE_TEXELS = 3;
 
 vec3 row_dot(vec4 m[3], vec3 v) { return vec3(dot(m[0].xyz, v), dot(m[1].xyz, v), dot(m[2].xyz, v)); }
 vec3 translation(vec4 m[3]) { return vec3(m[0].w, m[1].w, m[2].w); }
@@ -205,7 +213,8 @@ Material load_material(uint index) {
     uvec4 maps = texelFetch(materials, base + 6);
     uvec4 last = texelFetch(materials, base + 7);
     return Material(ambient.rgb, ambient.w, lambert.rgb, lambert.w, glossy.rgb, glossy.w, emission.rgb, emission.w,
-                    reflection.rgb, reflection.w, transmission.rgb, transmission.w, maps.x, maps.y, maps.z, maps.w, last.x, last.y, last.z);
+                    reflection.rgb, reflection.w, transmission.rgb, transmission.w, maps.x, maps.y, maps.z, maps.w, last.x, last.y, last.z,
+                    uintBitsToFloat(last.w));
 }
 
 Luminaire load_luminaire(uint index) {
@@ -218,7 +227,7 @@ Luminaire load_luminaire(uint index) {
     // Kind, threshold, alias, triangle.
     uvec4 choice = texelFetch(luminaires, base + 5);
     uint material = texelFetch(luminaires, base + 6).x;
-    return Luminaire(a.xyz, b.xyz, b.w, c.xyz, c.w, normal.xyz, normal.w, radiance.rgb, radiance.w, choice.x, choice.w, material);
+    return Luminaire(a.xyz, a.w, b.xyz, b.w, c.xyz, c.w, normal.xyz, normal.w, radiance.rgb, radiance.w, choice.x, choice.w, material);
 }
 
 // A slot of an alias table (twin: src/sampling/alias.rs).

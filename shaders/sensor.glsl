@@ -36,13 +36,18 @@ void sensor_ray(uvec2 pixel, uint pixel_index, uint sample_index, out vec3 origi
     vec3 offset = p.x * frame.right.xyz + p.y * frame.up.xyz;
     origin = frame.position.xyz;
     direction = frame.forward.xyz;
-    if (ORTHOGRAPHIC) origin += offset;
-    else direction += offset;
+    if (ORTHOGRAPHIC) {
+        origin += offset;
+    } else {
+        direction += offset;
+        // Not the eye point (src/scene/sensor.rs): the ray would round by its distance.
+        if (frame.start > 0.0) origin += frame.start * offset;
+    }
     if (frame.lens_radius > 0.0) {
         // All rays of a film point meet in one point of the plane of focus.
         vec2 point = lens_point(random.zw);
         offset = point.x * normalize(frame.right.xyz) + point.y * normalize(frame.up.xyz);
-        origin += offset;
+        origin += frame.lens_at_start * offset;
         direction = frame.focus_distance * direction - offset;
     }
     direction = normalize(direction);

@@ -18,19 +18,27 @@ struct Texture {
     uint width;
     uint height;
     bool clamped;
+    vec3 u;              // scalar product with (u, v, 1): where in the image, from its left edge
+    vec3 v;              // the same from its lower edge
 };
 
 Texture load_texture(uint index) {
-    uvec4 texel = texelFetch(textures, int(index));
-    return Texture(texel.x, texel.y, texel.z, texel.w != 0u);
+    int base = int(index) * TEXTURE_TEXELS;
+    uvec4 texel = texelFetch(textures, base);
+    vec3 u = uintBitsToFloat(texelFetch(textures, base + 1).xyz);
+    vec3 v = uintBitsToFloat(texelFetch(textures, base + 2).xyz);
+    return Texture(texel.x, texel.y, texel.z, texel.w != 0u, u, v);
 }
+
+// A coordinate that is not finite counts as 0. By the bits: a compiler may assume that no float is infinite.
+vec2 finite(vec2 uv) { return mix(uv, vec2(0.0), equal(floatBitsToUint(uv) & INFINITY_BITS, uvec2(INFINITY_BITS))); }
 
 // Linear RGB and alpha, bilinear between the centres of texels; v points up.
 vec4 texture_at(uint map, vec2 uv) {
     Texture image = load_texture(map);
     ivec2 size = ivec2(image.width, image.height);
-    // By the bits: a compiler may assume that no float is infinite.
-    uv = mix(uv, vec2(0.0), equal(floatBitsToUint(uv) & INFINITY_BITS, uvec2(INFINITY_BITS)));
+    uv = finite(uv);
+    if (MAP_TRANSFORMS) uv = finite(vec2(dot(image.u, vec3(uv, 1.0)), dot(image.v, vec3(uv, 1.0))));
     uv = image.clamped ? clamp(uv, vec2(0.0), vec2(1.0)) : uv - floor(uv);
     vec2 p = vec2(uv.x, 1.0 - uv.y) * vec2(size) - 0.5;
     vec2 low = floor(p);

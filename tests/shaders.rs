@@ -279,6 +279,7 @@ fn twins() -> Vec<(&'static str, f64)> {
         ("OBJECT_TEXELS", texels(size_of::<layout::Object>())),
         ("MATERIAL_TEXELS", texels(size_of::<layout::Material>())),
         ("LUMINAIRE_TEXELS", texels(size_of::<layout::Luminaire>())),
+        ("TEXTURE_TEXELS", texels(size_of::<layout::Texture>())),
         ("NODE_TEXELS", texels(size_of::<CwBvhNode>())),
         ("STACK_SIZE", STACK_SIZE as f64),
         ("MOST_RADIANCE", MOST_RADIANCE),
@@ -420,4 +421,45 @@ fn specialization_constants_have_the_host_s_order() {
             assert_eq!(Some(&names[&id]), expected.get(spec as usize), "constant {spec} in {}", shader.name);
         }
     }
+}
+
+/// No shader binds more, or larger things, than a device is asked for; and that is no more than Vulkan guarantees (a test beside it).
+#[test]
+fn shaders_need_no_more_than_is_asked_for() {
+    use luminaire::gpu::NEEDS;
+    use rspirv::spirv::{Dim, StorageClass};
+    for shader in SHADERS {
+        let module = rspirv::dr::load_bytes(shader.spirv).expect("valid SPIR-V");
+        let result = |id: u32| module.types_global_values.iter().find(|i| i.result_id == Some(id));
+        let (mut uniform, mut storage, mut texels, mut others) = (0, 0, 0, 0);
+        for variable in module.types_global_values.iter().filter(|i| i.class.opcode == Op::Variable) {
+            let Operand::StorageClass(class) = variable.operands[0] else { panic!("a variable without a class") };
+            let pointer = result(variable.result_type.expect("a type")).expect("a pointer");
+            let Operand::IdRef(pointee) = pointer.operands[1] else { panic!("a pointer to nothing") };
+            let pointee = result(pointee).expect("a type");
+            match class {
+                StorageClass::Uniform => uniform += 1,
+                StorageClass::StorageBuffer => storage += 1,
+                StorageClass::UniformConstant if pointee.class.opcode == Op::TypeSampledImage => {
+                    let Operand::IdRef(image) = pointee.operands[0] else { panic!("of no image") };
+                    let image = result(image).expect("an image");
+                    assert!(image.operands.contains(&Operand::Dim(Dim::DimBuffer)), "{}", shader.name);
+                    texels += 1;
+                }
+                StorageClass::UniformConstant => others += 1,
+                _ => {}
+            }
+        }
+        let name = shader.name;
+        assert!(uniform == NEEDS.uniform_buffers && storage <= NEEDS.storage_buffers, "{name}: {uniform}, {storage}");
+        assert!(texels > 2 && texels <= NEEDS.texel_buffers, "{name}: {texels} texel buffers");
+        assert!(uniform + storage + texels + others <= NEEDS.resources, "{name}");
+    }
+    for (name, size, _) in layout::STRUCTS {
+        let limit = if *name == "Frame" { NEEDS.uniform_bytes } else { u32::MAX };
+        assert!(*size as u32 <= limit, "{name}");
+        let pushed = ["Batch", "Call", "Shots"].contains(name);
+        assert!(!pushed || *size as u32 <= NEEDS.push_constants, "{name}");
+    }
+    assert!(layout::TILE_WORKGROUP.pow(2) <= NEEDS.invocations && layout::ROW_WORKGROUP <= NEEDS.invocations);
 }

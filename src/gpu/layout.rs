@@ -67,7 +67,7 @@ macro_rules! shared {
 shared! {
     /// Sensor and estimator: constant during a render (binding 0).
     Frame {
-        /// Eye point.
+        /// Eye point, or a point `start` in front of it.
         position: [f32; 4],
         /// Unit line of sight.
         forward: [f32; 4],
@@ -107,8 +107,12 @@ shared! {
         environment_height: u32,
         /// Turns by which the environment is rotated.
         environment_rotation: f32,
-        /// To a multiple of 16 bytes.
-        padding: [u32; 3],
+        /// Least probability with which an emissive triangle is chosen.
+        least_probability: f32,
+        /// Distance along the line of sight from the eye point to `position`, where rays start; 0 but for long lenses far away.
+        start: f32,
+        /// What is left there of a ray's offset on the lens.
+        lens_at_start: f32,
         /// The filter's inverse cumulative distribution: 257 knots, in pixels.
         filter_table: [[f32; 4]; FILTER_TEXELS],
     }
@@ -197,8 +201,8 @@ shared! {
         one_sided: u32,
         /// 1 if it is a sheet whose two sides are one surface.
         thin: u32,
-        /// To a multiple of 16 bytes.
-        padding: u32,
+        /// Of even light from outside, what a coat lets through to the base.
+        coat_transmittance: f32,
     }
 }
 
@@ -207,8 +211,8 @@ shared! {
     Luminaire {
         /// Position, direction towards the light, or first corner.
         a: [f32; 3],
-        /// Nothing.
-        padding_a: f32,
+        /// Probability of being chosen as the power heuristic has it, wherever the light is found.
+        ideal_probability: f32,
         /// Second corner.
         b: [f32; 3],
         /// Area of the triangle.
@@ -223,7 +227,7 @@ shared! {
         one_sided: f32,
         /// Intensity, irradiance or radiance without its texture.
         radiance: [f32; 3],
-        /// Probability of being chosen.
+        /// Probability of being chosen, to the last random number.
         probability: f32,
         /// A [`LuminaireKind`].
         kind: u32,
@@ -255,7 +259,7 @@ shared! {
 }
 
 shared! {
-    /// An image (binding 10): one texel, which `load_texture` reads.
+    /// An image (binding 10): three texels, which `load_texture` reads.
     Texture {
         /// Its first texel among those of all textures.
         first_texel: u32,
@@ -265,6 +269,14 @@ shared! {
         height: u32,
         /// 1 if it ends at its edges, 0 if it repeats.
         clamped: u32,
+        /// Scalar product with (u, v, 1): where in the image, from its left edge.
+        u: [f32; 3],
+        /// Nothing.
+        padding_u: f32,
+        /// The same from its lower edge.
+        v: [f32; 3],
+        /// Nothing.
+        padding_v: f32,
     }
 }
 

@@ -1,6 +1,7 @@
 //! Whether a scene fits into the memory of a device, before anything is uploaded.
 
 use super::layout;
+use super::pack::texture::texel_count;
 use super::specialization::KernelModel;
 use super::vulkan::device::Device;
 use crate::memory::{available, gib};
@@ -34,7 +35,7 @@ impl Budget {
             + if textured { size_of::<layout::TriangleUvs>() } else { 0 }
             + if features.vertex_colours { size_of::<layout::VertexColours>() } else { 0 };
         let objects = scene.objects.len() as u64 * size_of::<layout::Object>() as u64;
-        let texels: u64 = scene.textures.iter().map(|texture| texture.texels.len() as u64).sum();
+        let texels = texel_count(&scene.textures);
         let image = scene.environment.as_ref().and_then(|environment| environment.image.as_ref());
         Budget {
             geometry: triangles * triangle as u64 + objects,
@@ -91,7 +92,7 @@ impl Budget {
 mod tests {
     use super::*;
     use crate::scene::{Texture, build};
-    use glam::{Affine3A, Vec3};
+    use glam::{Affine2, Affine3A, Vec2, Vec3};
     use half::f16;
 
     #[test]
@@ -107,8 +108,11 @@ mod tests {
             "{error}"
         );
 
-        let texels = vec![[f16::ONE; 4]; 1 << 16];
-        scene.textures.push(Texture { name: String::new(), width: 256, height: 256, texels, clamp: false }.into());
+        let texels = vec![[f16::ONE; 4]; 1 << 16].into();
+        let texture = Texture { width: 256, height: 256, texels, ..Texture::default() };
+        // The same image in another place has no texels of its own.
+        let moved = Texture { transform: Affine2::from_translation(Vec2::X * 0.5), ..texture.clone() };
+        scene.textures.extend([texture.into(), moved.into()]);
         scene.materials[0].maps.lambert = Some(0);
         let textured = Budget::of(&scene, true, &KernelModel::of(&scene));
         assert_eq!((textured.geometry, textured.textures), (1280 * 80 + 112, 8 << 16));

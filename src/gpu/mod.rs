@@ -23,7 +23,7 @@ pub use vulkan::buffer::Buffer;
 pub use vulkan::device::Device;
 pub use vulkan::instance::Instance;
 pub use vulkan::kernel::Kernel;
-pub use vulkan::physical_device::PhysicalDevice;
+pub use vulkan::physical_device::{NEEDS, Needs, PhysicalDevice};
 pub use vulkan::shader::{SHADERS, Shader};
 pub use vulkan::texel_buffer::TexelBuffer;
 pub use vulkan::validation::validation_messages;

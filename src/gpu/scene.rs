@@ -16,6 +16,7 @@ use crate::Result;
 use crate::scene::{FilmSettings, Integrator, LuminaireTable, Scene, Sensor};
 use ash::vk;
 use bytemuck::Pod;
+use glam::DVec3;
 use std::sync::Arc;
 
 /// Bindings 0 to 6 and 9 to 14.
@@ -30,6 +31,8 @@ pub(super) struct GpuScene {
     texels: TexelBuffer,
     environment_texels: TexelBuffer,
     environment_slots: TexelBuffer,
+    /// The scene's [`Scene::world_bounds`].
+    bounds: (DVec3, DVec3),
     pub(super) model: KernelModel,
 }
 
@@ -68,13 +71,14 @@ impl GpuScene {
             texels: texel_buffer(device, "texels", &texels)?,
             environment_texels: texel_buffer(device, "environment", &environment_texels)?,
             environment_slots: texel_buffer(device, "environment choice", &environment_slots)?,
+            bounds: scene.world_bounds(),
             model,
         })
     }
 
     /// Puts another camera and film in the place of the present ones. The kind of projection has to stay: it is a part of the kernel.
     pub(super) fn look(&mut self, sensor: &Sensor, film: &FilmSettings) -> Result<()> {
-        aim(&mut self.frame_data, sensor, film);
+        aim(&mut self.frame_data, sensor, film, self.bounds);
         self.frame.write(&[self.frame_data])
     }
 

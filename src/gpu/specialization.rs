@@ -4,7 +4,7 @@ use crate::scene::{
     AreaSampling, Directions, Extinction, Integrator, LightSampling, Luminaire, LuminaireTable, Material, Projection,
     SampledLuminaire, Sampler, Scene,
 };
-use glam::{Affine3A, Vec3};
+use glam::{Affine2, Affine3A, Vec3};
 
 macro_rules! features {
     ($($(#[$doc:meta])* $name:ident: $text:literal,)*) => {
@@ -62,6 +62,10 @@ features! {
     thin: "thin sheets",
     /// Some mesh has vertex colours.
     vertex_colours: "vertex colours",
+    /// Some material has a base under a smooth dielectric.
+    coats: "coats",
+    /// Some map is moved or scaled.
+    map_transforms: "map transforms",
 }
 
 /// The kernel that runs: the scene's features, and the choices of its integrator.
@@ -102,8 +106,10 @@ impl KernelModel {
                 [m.maps.ambient, m.maps.lambert, m.maps.glossy, m.maps.emission].iter().any(Option::is_some)
             }),
             holes: material(Material::has_holes),
-            thin: material(|m| m.thin && m.transmission != Vec3::ZERO),
+            thin: material(Material::is_sheet),
             vertex_colours: scene.meshes.iter().any(|m| !m.colours.is_empty()),
+            coats: material(Material::is_coated),
+            map_transforms: scene.textures.iter().any(|texture| texture.transform != Affine2::IDENTITY),
         };
         KernelModel {
             features,

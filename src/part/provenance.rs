@@ -62,9 +62,9 @@ impl Provenance {
                 digest(|hash| {
                     write(hash, materials);
                     for texture in textures {
-                        let Texture { name: _, width, height, texels, clamp } = &**texture;
-                        write(hash, &(width, height, clamp));
-                        hash.update(bytemuck::cast_slice(texels));
+                        let Texture { name: _, width, height, texels, clamp, transform } = &**texture;
+                        write(hash, &(width, height, clamp, transform));
+                        hash.update(bytemuck::cast_slice(&texels[..]));
                     }
                 }),
             ),

@@ -1,5 +1,6 @@
 //! What the camera sees first; its twin is `shaders/aov.comp`.
 
+use super::impulse::fresnel;
 use super::prepared_scene::Reference;
 use crate::film::AovSum;
 use crate::sampling::ray_salt;
@@ -18,9 +19,17 @@ impl Reference {
             let salt = ray_salt(pixel, sample, 0, self.scene.settings.seed);
             let Some(hit) = self.closest_hit(origin, direction, f64::INFINITY, salt) else { continue };
             let surfel = self.surfel(&hit, -direction);
-            // Of a dielectric either the one or the other.
-            let transmission = if surfel.eta.is_some() { surfel.transmission } else { DVec3::ZERO };
-            albedo += surfel.lambert + surfel.glossy + surfel.reflection.max(transmission);
+            let base = surfel.lambert + surfel.glossy;
+            albedo += match surfel.eta {
+                // As from straight above.
+                Some(eta) if surfel.is_coated() => {
+                    let below = base + surfel.transmission;
+                    below + surfel.reflection * fresnel(eta, 1.0) * (DVec3::ONE - below)
+                }
+                // Of a dielectric either the one or the other.
+                Some(_) => base + surfel.reflection.max(surfel.transmission),
+                None => base + surfel.reflection,
+            };
             normal += surfel.shading_normal;
             depth += (surfel.position - position).dot(forward);
             hits += 1;

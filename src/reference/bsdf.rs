@@ -1,5 +1,5 @@
 //! The BSDF without its impulses: its value, its directions and their density, which belong together. Lambert and normalised Blinn-Phong (slide "Surface
-//! Element Class"); how directions are chosen (slides "Inefficient Integration", "More Efficient Integration").
+//! Element Class"), under a coat where there is one; how directions are chosen (slides "Inefficient Integration", "More Efficient Integration").
 
 use super::impulse::reflect;
 use super::surfel::{Surfel, mean};
@@ -16,13 +16,29 @@ impl Surfel {
         if !self.is_above(wi) {
             return DVec3::ZERO;
         }
-        let mut f = self.lambert / PI;
+        let [lambert_coat, glossy_coat] = self.coat(wo, wi);
+        let mut f = lambert_coat * self.lambert / PI;
         if self.glossy != DVec3::ZERO {
             let h = (wi + wo).normalize_or_zero();
             let lobe = self.shading_normal.dot(h).max(0.0).powf(self.exponent);
-            f += self.glossy * (glossy_normalization(self.exponent) * lobe);
+            f += glossy_coat * self.glossy * (glossy_normalization(self.exponent) * lobe);
         }
         f
+    }
+
+    /// What a coat, which reflects the share `F` of light, makes of the base's two lobes. Without a coat all is 1.
+    ///
+    /// Of even light from all sides the base gets `1 - F` on average over the cosine, and sends `1 - F` of what it gets out again. Light that the
+    /// coat holds back below gets its next chance there (no colour shift: as if the base were white): so Lambert's lobe is `(1 - F(wi)) (1 -
+    /// F(wo))` over that average, and scatters `1 - F(wo)` of its albedo, which with `F(wo)`, the mirror, is at most 1. The glossy lobe, which has no
+    /// such average, gets the lesser of the two. Both are the same for light that goes the other way. A reflection that is tinted or less than 1
+    /// holds back as much as it reflects, in each channel.
+    fn coat(&self, wo: DVec3, wi: DVec3) -> [DVec3; 2] {
+        let Some(index) = self.eta.filter(|_| self.is_coated()) else { return [DVec3::ONE; 2] };
+        let impulses = self.impulses(wo);
+        let (out, into) = (DVec3::ONE - impulses.reflection, DVec3::ONE - self.impulses(wi).reflection);
+        let average = self.coat_transmittance / if impulses.eta == index { 1.0 } else { index * index };
+        [out * into / (DVec3::ONE - self.reflection * (1.0 - average)), out.min(into)]
     }
 
     /// Whether light is scattered in other ways than by impulses, so that light sampling makes sense.

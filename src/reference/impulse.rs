@@ -86,7 +86,8 @@ impl Surfel {
             let (reflection, transmission) = (self.reflection * reflectance, self.transmission * (1.0 - reflectance));
             return Impulses { reflection, reflected, transmission, transmitted, eta: 1.0 };
         }
-        let eta = if self.front { index } else { 1.0 / index };
+        // Nobody is inside of what transmits nothing.
+        let eta = if self.front || self.transmission == DVec3::ZERO { index } else { 1.0 / index };
         let fresnel = fresnel(eta, normal.dot(wo));
         Impulses {
             reflection: self.reflection * fresnel,
@@ -100,7 +101,8 @@ impl Surfel {
     /// The probability with which a path that arrives from `wo` goes on by an impulse (slide "Impulse Reflection": 60 %).
     pub fn impulse_probability(&self, impulses: &Impulses) -> f64 {
         let impulse = mean(impulses.reflection + impulses.transmission);
-        let other = mean(self.lambert + self.glossy);
+        let coat = if self.is_coated() { DVec3::ONE - impulses.reflection } else { DVec3::ONE };
+        let other = mean((self.lambert + self.glossy) * coat);
         if impulse == 0.0 {
             0.0
         } else if other == 0.0 {

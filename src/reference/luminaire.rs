@@ -24,7 +24,8 @@ pub(super) struct Unoccluded {
     pub(super) wi: DVec3,
     /// Irradiance on a surface perpendicular to `wi`, over the probability of this sample.
     pub(super) irradiance: DVec3,
-    /// Density of `wi`, per steradian, the choice of the luminaire included; none where no other ray can find the luminaire.
+    /// Density of `wi`, per steradian, the choice of the luminaire included, as [`Reference::luminaire_pdf`] has it; none where no other ray
+    /// can find the luminaire.
     pdf: Option<f64>,
     /// The shadow ray.
     pub(super) origin: DVec3,
@@ -69,6 +70,12 @@ impl Reference {
             return DVec3::ZERO;
         }
         radiance
+    }
+
+    /// The direction in which light sampling looks from a surfel with these numbers, and the density that the power heuristic is given for
+    /// it; none where no other ray can find the luminaire.
+    pub fn sampled_direction(&self, surfel: &Surfel, random: [u32; 4]) -> Option<(DVec3, f64)> {
+        self.sample_luminaire(surfel, random).and_then(|light| Some((light.wi, light.pdf?)))
     }
 
     /// Chooses a luminaire and a point on it.
@@ -122,14 +129,15 @@ impl Reference {
         if self.scene.materials[triangle.material as usize].one_sided && triangle.normal.dot(wi) > 0.0 {
             return None;
         }
-        let pdf = probability * self.triangle_density(surfel.position, triangle.vertices, point);
+        let density = self.triangle_density(surfel.position, triangle.vertices, point);
+        let ideal = self.luminaires.area_probability(triangle.material, triangle.area());
         // Both ends are inexact.
         let origin = surfel.offset_ray_origin(wi);
         let target = offset_ray_origin(point, position_error(triangle.vertices), triangle.normal, -wi);
         Some(Unoccluded {
             wi,
-            irradiance: self.emission_at(triangle, weights) / pdf,
-            pdf: Some(pdf),
+            irradiance: self.emission_at(triangle, weights) / (probability * density),
+            pdf: Some(ideal * density),
             origin,
             direction: target - origin,
             t_max: BEFORE_TARGET,
@@ -178,8 +186,7 @@ impl Reference {
         let object = &self.scene.objects[object as usize];
         let mesh = &self.scene.meshes[object.mesh as usize];
         let material = object.material.unwrap_or(mesh.triangles[triangle as usize].material);
-        let probability = self.luminaires.area_density[material as usize] * area;
-        probability * self.triangle_density(from, corners, surfel.position)
+        self.luminaires.area_probability(material, area) * self.triangle_density(from, corners, surfel.position)
     }
 
     /// The same for a direction to the environment.

@@ -2,7 +2,7 @@
 
 use super::instance::Instance;
 use super::tree::Trees;
-use crate::scene::{FilmSettings, LuminaireTable, Scene, widen};
+use crate::scene::{FilmSettings, LuminaireTable, Scene, coat_transmittance, widen};
 use glam::DVec3;
 
 /// The reference tracer with its scene; seed, film size and integrator are the scene's own.
@@ -12,6 +12,8 @@ pub struct Reference {
     /// None: every triangle is tested.
     pub(super) trees: Option<Trees>,
     pub(super) luminaires: LuminaireTable,
+    /// For each material, what [`Surfel::coat_transmittance`](super::surfel::Surfel::coat_transmittance) is.
+    pub(super) coats: Vec<f64>,
     /// Inverse of the pixel filter's distribution; empty for the pixel's own square.
     pub(super) filter: Vec<f32>,
 }
@@ -36,8 +38,10 @@ impl Reference {
                 Instance { to_world, to_object, normal_to_world: to_object.matrix3.transpose() }
             })
             .collect();
+        let coated = scene.materials.iter().map(|m| m.eta.filter(|_| m.is_coated()));
+        let coats = coated.map(|eta| eta.map_or(1.0, |eta| coat_transmittance(eta.into()))).collect();
         let (luminaires, filter) = (LuminaireTable::new(scene), filter_table(&scene.film));
-        Reference { scene: scene.clone(), instances, trees: None, luminaires, filter }
+        Reference { scene: scene.clone(), instances, trees: None, luminaires, coats, filter }
     }
 
     /// World-space corners of a triangle of an object.

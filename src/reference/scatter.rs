@@ -16,8 +16,13 @@ pub const SURE_THROUGHPUT: f64 = 0.4;
 /// that loses least. Fresnel aside, so that it is the same for all directions. Never above 1: nothing makes a path heavier than the light it
 /// stands for.
 pub fn survival(surfel: &Surfel) -> f64 {
-    let impulse = surfel.reflection.max(surfel.transmission);
-    (surfel.lambert + surfel.glossy + impulse).max_element().min(1.0)
+    let base = surfel.lambert + surfel.glossy;
+    let albedo = if surfel.is_coated() {
+        surfel.reflection.max(base + surfel.transmission)
+    } else {
+        base + surfel.reflection.max(surfel.transmission)
+    };
+    albedo.max_element().min(1.0)
 }
 
 /// How a path goes on.

@@ -41,6 +41,8 @@ pub struct Surfel {
     pub eta: Option<f64>,
     /// Whether it is both sides of a sheet at once.
     pub thin: bool,
+    /// [`coat_transmittance`](crate::scene::coat_transmittance) of `eta`, where there is a coated base.
+    pub coat_transmittance: f64,
     /// Probability of going on by an impulse, if the material states one.
     pub impulse_probability: Option<f64>,
 }
@@ -97,7 +99,8 @@ impl Reference {
             reflection: material.reflection.as_dvec3(),
             transmission: if material.eta.is_some() { material.transmission.as_dvec3() } else { DVec3::ZERO },
             eta: material.eta.map(f64::from),
-            thin: material.thin,
+            thin: material.is_sheet(),
+            coat_transmittance: self.coats[object.material.unwrap_or(triangle.material) as usize],
             impulse_probability: material.impulse_probability.map(f64::from),
         }
     }
@@ -107,6 +110,11 @@ impl Surfel {
     /// Whether a direction is on the side of `wo`, of the triangle and of the shading normal's plane.
     pub fn is_above(&self, wi: DVec3) -> bool {
         self.geometric_normal.dot(wi) > 0.0 && self.shading_normal.dot(wi) > 0.0
+    }
+
+    /// Whether what scatters lies under a smooth dielectric ([`crate::scene::Material::is_coated`]).
+    pub fn is_coated(&self) -> bool {
+        self.eta.is_some() && !self.thin && self.reflection != DVec3::ZERO && self.scatters()
     }
 
     /// Where a ray that leaves in `direction` starts: far enough from the triangle's plane not to hit it again.

@@ -2,13 +2,15 @@
 
 use super::prepared_scene::Reference;
 use crate::scene::{Material, Texture};
-use glam::{DVec2, DVec4};
+use glam::{Affine2, DVec2, DVec4};
 
 /// Colour and alpha of a texture at `uv`, bilinear between the centres of the texels. `v` points up: row 0 is the image's top.
 ///
-/// Coordinates repeat, or stay at the border if the texture says so; one that is not finite counts as 0.
+/// The texture's transform comes first. Coordinates repeat, or stay at the border if the texture says so; one that is not finite counts as 0.
 pub fn bilinear(texture: &Texture, uv: DVec2) -> DVec4 {
     let finite = |x: f64| if x.is_finite() { x } else { 0.0 };
+    let Affine2 { matrix2, translation } = texture.transform;
+    let uv = matrix2.as_dmat2() * DVec2::new(finite(uv.x), finite(uv.y)) + translation.as_dvec2();
     let (width, height) = (f64::from(texture.width), f64::from(texture.height));
     let x = finite(uv.x) * width - 0.5;
     let y = (1.0 - finite(uv.y)) * height - 0.5;

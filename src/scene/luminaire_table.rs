@@ -55,7 +55,14 @@ pub struct LuminaireTable {
     pub environment: Option<EnvironmentDistribution>,
     /// For each material, the probability of choosing a triangle of it, for each unit of its area; 0 if it does not emit.
     pub area_density: Vec<f64>,
+    /// But at least this, however small a triangle is.
+    pub least_probability: f64,
 }
+
+/// A luminaire is chosen at least so often as this share of what it would be if all had the same power.
+const LEAST_SHARE: f64 = 1.0 / 1024.0;
+/// And at least by so many of the 2^32 random numbers, of which the table may lose one to rounding.
+const LEAST_NUMBERS: f64 = 8.0;
 
 impl LuminaireTable {
     /// Collects the luminaires of a scene that emit anything.
@@ -96,10 +103,22 @@ impl LuminaireTable {
         let emits: Vec<bool> = powers.iter().map(|p| *p > 0.0).collect();
         let mut keep = emits.iter();
         entries.retain(|_| *keep.next().expect("one flag an entry"));
-        let powers: Vec<f64> = powers.into_iter().filter(|p| *p > 0.0).collect();
+        let mut powers: Vec<f64> = powers.into_iter().filter(|p| *p > 0.0).collect();
+        // What no random number stood for would never be found, and the power heuristic would wait for it.
+        let least_share = (LEAST_SHARE / powers.len() as f64).max(LEAST_NUMBERS / 4_294_967_296.0);
+        let least = least_share * powers.iter().sum::<f64>();
+        powers.iter_mut().for_each(|power| *power = power.max(least));
         let total_power: f64 = powers.iter().sum();
         let area_density = exitance.iter().map(|e| if *e == 0.0 { 0.0 } else { e / total_power }).collect();
-        LuminaireTable { choice: AliasTable::new(&powers), entries, environment, area_density }
+        let least_probability = if powers.is_empty() { 0.0 } else { least / total_power };
+        LuminaireTable { choice: AliasTable::new(&powers), entries, environment, area_density, least_probability }
+    }
+
+    /// The probability of choosing an emissive triangle of this material and area, as it was asked for. With 32 random bits the table comes
+    /// only near ([`AliasTable::pdf`]), the less so the smaller it is. What is divided by is what the table does; the power heuristic, whose
+    /// weights have to add up to 1 wherever the light is found, goes by this.
+    pub fn area_probability(&self, material: u32, area: f64) -> f64 {
+        (self.area_density[material as usize] * area).max(self.least_probability)
     }
 
     /// The probability of choosing the environment; 0 if there is none.

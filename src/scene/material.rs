@@ -5,8 +5,8 @@ use glam::Vec3;
 /// The surface's scattering and emission: normalised Blinn-Phong (slide "Surface Element Class") and impulses (slides "Impulse
 /// Reflection", "Adding Transmission").
 ///
-/// `lambert + glossy + max(reflection, transmission) <= 1` in every channel, each times the largest texel of its map; the loader
-/// scales down what exceeds it and warns.
+/// In every channel, each times the largest texel of its map, `lambert + glossy + max(reflection, transmission) <= 1`; for a coated base
+/// ([`Material::is_coated`]) `reflection <= 1` and `lambert + glossy + transmission <= 1`. The loader scales down what exceeds it and warns.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {
     /// The name in the MTL or scene file.
@@ -29,7 +29,7 @@ pub struct Material {
     /// Albedo of the impulse transmission, times one minus Fresnel's reflectance (`Tf`); zero without `eta`.
     pub transmission: Vec3,
     /// Index of refraction of what lies behind the outward normal over that in front of it (`Ni`), 0.01 to 100; none: no
-    /// Fresnel, no transmission.
+    /// Fresnel, no transmission. Where nothing is transmitted nobody is behind: it is the same from both sides.
     pub eta: Option<f32>,
     /// Whether the surface is a sheet, such as a window pane, whose two sides are one: it reflects `2 F / (1 + F)`, with `F` Fresnel's
     /// reflectance of either side, and lets the rest through without bending it. Which side is outward makes no difference.
@@ -89,6 +89,18 @@ impl Material {
     /// Whether light that passes is bent, so that the surface has to be that of a closed body.
     pub fn bends(&self) -> bool {
         self.transmission != Vec3::ZERO && self.eta.is_some_and(|eta| eta != 1.0) && !self.thin
+    }
+
+    /// Whether the surface is a sheet that lets light through: [`Material::thin`] says nothing of what transmits nothing.
+    pub fn is_sheet(&self) -> bool {
+        self.thin && self.transmission != Vec3::ZERO && self.eta.is_some()
+    }
+
+    /// Whether what is diffuse and glossy lies under a smooth dielectric: then it gets, and gives away, what Fresnel does not reflect. A
+    /// mirror without `eta`, and the two sides of a thin sheet, lie beside it instead.
+    pub fn is_coated(&self) -> bool {
+        let base = self.lambert != Vec3::ZERO || self.glossy != Vec3::ZERO;
+        base && self.reflection != Vec3::ZERO && self.eta.is_some() && !self.is_sheet()
     }
 
     /// Whether a ray may pass the surface as if it were not there.

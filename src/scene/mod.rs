@@ -5,6 +5,7 @@
 //! the same scene to the last bit.
 
 pub mod build;
+mod coat;
 mod darkness;
 mod environment;
 mod estimator;
@@ -21,6 +22,7 @@ mod texture;
 mod world;
 
 pub use crate::sampling::Sampler;
+pub use coat::coat_transmittance;
 pub use environment::{Environment, EnvironmentDistribution, EnvironmentImage};
 pub use estimator::{
     AreaSampling, Directions, Estimator, EstimatorChanges, Extinction, Integrator, LightSampling, PRESETS,

@@ -1,6 +1,6 @@
 //! Small scenes, built in code.
 
-use glam::{Affine3A, DVec2, DVec3, Vec3};
+use glam::{Affine2, Affine3A, DVec2, DVec3, Vec2, Vec3};
 use luminaire::reference::surfel::Surfel;
 pub use luminaire::scene::build::*;
 use luminaire::scene::*;
@@ -58,6 +58,7 @@ pub fn flat_surfel(lambert: DVec3, glossy: DVec3, exponent: f64) -> Surfel {
         transmission: DVec3::ZERO,
         eta: None,
         thin: false,
+        coat_transmittance: 1.0,
         impulse_probability: None,
     }
 }
@@ -65,7 +66,7 @@ pub fn flat_surfel(lambert: DVec3, glossy: DVec3, exponent: f64) -> Surfel {
 /// A texture from a function of the texel's place.
 pub fn texture(width: u32, height: u32, texel: impl Fn(u32, u32) -> [f32; 4]) -> Texture {
     let texels = (0..width * height).map(|i| texel(i % width, i / width).map(half::f16::from_f32)).collect();
-    Texture { name: "texture".into(), width, height, texels, clamp: false }
+    Texture { name: "texture".into(), width, height, texels: Vec::into(texels), ..Texture::default() }
 }
 
 /// The room of [`cornell_like`] with impulses: a glass ball and a mirrored one (smooth), a slab of coloured glass, and the lecture's 60/40
@@ -94,6 +95,7 @@ pub fn glass_room(width: u32, height: u32) -> Scene {
 }
 
 /// The room with textures: a chequered floor, a glossy map, a screen that glows by a texture, a curtain with holes, a half-transparent one.
+/// The floor's map and the curtain's are scaled and moved, and the block is of plastic.
 pub fn textured_room(width: u32, height: u32) -> Scene {
     let mut scene = cornell_like(width, height);
     let chequer = |x: u32, y: u32| if (x + y).is_multiple_of(2) { 0.9 } else { 0.2 };
@@ -111,6 +113,13 @@ pub fn textured_room(width: u32, height: u32) -> Scene {
     scene.materials[0].maps.lambert = Some(0);
     let ball = scene.materials.len() - 1;
     scene.materials[ball].maps.glossy = Some(1);
+    let block = ball - 1;
+    scene.materials[block] = Material { reflection: Vec3::ONE, eta: Some(1.5), ..scene.materials[block].clone() };
+    for (map, scale, offset) in [(0, Vec2::new(2.0, 0.5), Vec2::new(0.25, 0.0)), (2, Vec2::splat(-1.5), Vec2::Y * 0.3)]
+    {
+        let texture = Arc::make_mut(&mut scene.textures[map]);
+        texture.transform = Affine2::from_scale_angle_translation(scale, 0.0, offset);
+    }
     scene.materials[4].maps.ambient = Some(1);
     let with_uvs = |mut mesh: Mesh| {
         mesh.uvs = vec![glam::Vec2::ZERO, glam::Vec2::X * 2.0, glam::Vec2::new(2.0, 1.5), glam::Vec2::Y * 1.5];

@@ -5,10 +5,11 @@ use super::*;
 use crate::common::directions::*;
 use crate::common::scenes::*;
 use crate::common::statistics::*;
-use glam::{Affine3A, DVec2, DVec3, Vec3};
+use glam::{Affine2, Affine3A, DVec2, DVec3, Vec2, Vec3};
 use luminaire::gpu::probe::{Call, Function, Probe};
 use luminaire::reference::{Reference, texture::bilinear};
 use luminaire::sampling::{random4, uniform};
+use luminaire::scene::Texture;
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 
@@ -29,6 +30,41 @@ fn scene() -> Scene {
         }
     }
     scene
+}
+
+/// The same with a few of them in other places, one image in several: scales and offsets of the size that people write.
+#[test]
+fn lookups_of_placed_maps_match() {
+    let mut scene = scene();
+    for (index, (scale, offset)) in
+        [((2.0, 2.0), (0.5, 0.0)), ((-1.0, 10.0), (0.25, -0.75)), ((0.0, 1.0), (0.1, 0.2))].into_iter().enumerate()
+    {
+        for texture in [4 + index, 8, 9] {
+            let transform = Affine2::from_scale_angle_translation(Vec2::from(scale), 0.0, Vec2::from(offset));
+            let placed = Texture { transform, ..Texture::clone(&scene.textures[texture]) };
+            scene.textures.push(placed.into());
+        }
+    }
+    let mut rng = StdRng::seed_from_u64(24);
+    let mut calls: Vec<Call> = Vec::new();
+    for map in 0..scene.textures.len() as u32 {
+        let mut look = |u: f32, v: f32| calls.push([[map, u.to_bits(), v.to_bits(), 0], [0; 4]]);
+        (0..2000).for_each(|_| look(rng.random_range(-3.0..4.0), rng.random_range(-3.0..4.0)));
+        [(f32::NAN, 0.3), (0.6, f32::INFINITY)].into_iter().for_each(|(u, v)| look(u, v));
+    }
+    on_every_backend(|backend| {
+        let probe = Probe::new(&backend.device, &scene, backend.ray_query).expect("a probe");
+        for (arguments, result) in calls.iter().zip(probe.call(Function::TextureAt, &calls).expect("the probe runs")) {
+            let texture = &scene.textures[arguments[0][0] as usize];
+            let [u, v] = [1, 2].map(|i| f64::from(f32::from_bits(arguments[0][i])));
+            let expected = bilinear(texture, DVec2::new(u, v)).to_array();
+            // Up to 40 times the size of the picture, rounded three times; and the texels are 4 at most.
+            let tolerance = 4.0 * (40.0 * 3.6e-7 * f64::from(texture.width.max(texture.height)) + 3.6e-7);
+            for (found, expected) in floats(result[0]).into_iter().zip(expected) {
+                assert!((found - expected).abs() <= tolerance, "{arguments:?}, {u} {v}: {found} {expected}");
+            }
+        }
+    });
 }
 
 #[test]

@@ -13,7 +13,7 @@ use luminaire::reference::scatter::scatter;
 use luminaire::reference::surfel::Surfel;
 use luminaire::reference::warp;
 use luminaire::sampling::{random4, uniform};
-use luminaire::scene::{Directions, Material};
+use luminaire::scene::{Directions, Material, coat_transmittance};
 use rand::SeedableRng;
 use rand::rngs::StdRng;
 use rayon::prelude::*;
@@ -39,7 +39,22 @@ fn without_gloss() -> Vec<Material> {
             ..Material::default()
         },
         Material { reflection: Vec3::ONE, transmission: Vec3::ONE, eta: Some(1.0 / 1.5), ..Material::default() },
+    ]
+}
+
+/// Lambert under a smooth dielectric: plastic, one with a tinted coat, one that transmits too, seen from both sides.
+fn coated() -> Vec<Material> {
+    let grey = Vec3::splat;
+    vec![
+        Material { reflection: Vec3::ONE, eta: Some(1.5), ..matte(Vec3::new(0.8, 1.0, 0.1)) },
+        Material {
+            reflection: Vec3::new(1.0, 0.5, 0.0),
+            eta: Some(2.4),
+            impulse_probability: Some(0.3),
+            ..matte(Vec3::ONE)
+        },
         Material { reflection: grey(0.5), transmission: grey(0.5), eta: Some(1.5), ..matte(Vec3::new(0.5, 0.3, 0.1)) },
+        Material { reflection: Vec3::ONE, transmission: grey(0.4), eta: Some(1.0 / 1.5), ..matte(grey(0.6)) },
     ]
 }
 
@@ -77,6 +92,7 @@ fn surfel(material: &Material) -> Surfel {
         reflection: material.reflection.as_dvec3(),
         transmission: material.transmission.as_dvec3(),
         eta: material.eta.map(f64::from),
+        coat_transmittance: material.eta.map_or(1.0, |eta| coat_transmittance(eta.into())),
         impulse_probability: material.impulse_probability.map(f64::from),
         ..flat_surfel(material.lambert.as_dvec3(), material.glossy.as_dvec3(), material.exponent.into())
     }
@@ -91,9 +107,20 @@ impl Case {
         let surfel = surfel(material);
         let wo = tilted(degrees).as_vec3().as_dvec3();
         let impulses = surfel.impulses(wo);
-        let mut albedo = surfel.lambert + impulses.reflection + impulses.transmission;
+        let passes = if surfel.is_coated() { DVec3::ONE - impulses.reflection } else { DVec3::ONE };
+        let mut albedo = surfel.lambert * passes + impulses.reflection + impulses.transmission;
         if surfel.glossy != DVec3::ZERO {
-            albedo += surfel.glossy * directional_albedo(&flat_surfel(DVec3::ZERO, DVec3::ONE, surfel.exponent), wo);
+            // Of a white lobe, under a coat that reflects as much as this channel's.
+            let lobe = |reflection: f64| {
+                let reflection = DVec3::splat(reflection);
+                directional_albedo(&Surfel { lambert: DVec3::ZERO, glossy: DVec3::ONE, reflection, ..surfel }, wo)
+            };
+            let white = lobe(surfel.reflection.x);
+            albedo += surfel.glossy
+                * match surfel.is_coated() {
+                    true => DVec3::new(white, lobe(surfel.reflection.y), lobe(surfel.reflection.z)),
+                    false => DVec3::splat(white),
+                };
         }
         let cells = counted.then(|| {
             let mirror = DVec3::new(-wo.x, -wo.y, wo.z);
@@ -271,6 +298,7 @@ fn check(materials: &[Material], directions: Directions) {
 #[test]
 fn paths_by_the_bsdf() {
     let mut materials = without_gloss();
+    materials.extend(coated());
     materials.extend(EXPONENTS.into_iter().flat_map(with_gloss));
     check(&materials, Directions::Bsdf);
 }
@@ -280,6 +308,7 @@ fn paths_by_the_bsdf() {
 fn paths_by_the_cosine() {
     let mut materials = without_gloss();
     materials.extend([0.0, 1.0, 20.0].into_iter().flat_map(with_gloss));
+    materials.extend(coated());
     check(&materials, Directions::Cosine);
 }
 
@@ -287,13 +316,15 @@ fn paths_by_the_cosine() {
 fn paths_by_the_uniform_density() {
     let mut materials = without_gloss();
     materials.extend([0.0, 1.0, 20.0].into_iter().flat_map(with_gloss));
+    materials.extend(coated());
     check(&materials, Directions::Uniform);
 }
 
-/// The kernel of a scene without glossy materials takes shortcuts.
+/// The kernel of a scene without glossy materials takes shortcuts, which a coated base takes away.
 #[test]
 fn paths_without_gloss() {
     check(&without_gloss(), Directions::Bsdf);
+    check(&coated(), Directions::Bsdf);
 }
 
 /// Light may go either way, to 1e-6, down to grazing angles and in the lobe.

@@ -3,12 +3,14 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod coats;
 mod environment;
 mod estimators;
 mod impulses;
 mod intersection;
 mod light;
 mod lost_light;
+mod luminaire_choice;
 mod sampling;
 mod scattering;
 mod sensor;

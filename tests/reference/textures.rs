@@ -3,7 +3,7 @@
 use crate::common::scenes::*;
 use crate::common::statistics::*;
 use crate::transport::{means, preset};
-use glam::{Affine3A, DVec2, DVec3, DVec4, Vec2, Vec3};
+use glam::{Affine2, Affine3A, DVec2, DVec3, DVec4, Vec2, Vec3};
 use half::f16;
 use luminaire::film::Rays;
 use luminaire::reference::Reference;
@@ -13,7 +13,8 @@ use luminaire::scene::*;
 
 fn texture(width: u32, texels: &[[f32; 4]], clamp: bool) -> Texture {
     let texels: Vec<[f16; 4]> = texels.iter().map(|texel| texel.map(f16::from_f32)).collect();
-    Texture { name: "texture".into(), width, height: texels.len() as u32 / width, texels, clamp }
+    let height = texels.len() as u32 / width;
+    Texture { name: "texture".into(), width, height, texels: texels.into(), clamp, ..Texture::default() }
 }
 
 /// Opacities in a row.
@@ -56,6 +57,62 @@ fn bilinear_at_known_points() {
         assert_eq!(at(1e30, 0.75).y, 0.0);
         assert_eq!(at(f64::NAN, 0.75), at(0.0, 0.75));
         assert_eq!(at(0.25, f64::INFINITY), at(0.25, 0.0));
+    }
+}
+
+/// `uv scale + offset` is where the picture is looked up, on every kind of map; it repeats, or ends, there. What is no number counts as 0.
+#[test]
+fn a_map_lies_where_its_transform_puts_it() {
+    let texels: Vec<_> = (0..12).map(|i| [i as f32, (i * i) as f32, 1.0, (i % 5) as f32 / 5.0]).collect();
+    for clamp in [false, true] {
+        let plain = texture(4, &texels, clamp);
+        for (scale, offset) in [((2.0, 2.0), (0.5, 0.0)), ((-1.0, 3.0), (0.0, 0.25)), ((0.0, 1.0), (0.75, 0.5))] {
+            let (scale, offset): (Vec2, Vec2) = (scale.into(), offset.into());
+            let placed =
+                Texture { transform: Affine2::from_scale_angle_translation(scale, 0.0, offset), ..plain.clone() };
+            for i in 0..400 {
+                let uv = DVec2::new(f64::from(i % 20), f64::from(i / 20)) / 7.0 - 1.0;
+                let expected = bilinear(&plain, uv * scale.as_dvec2() + offset.as_dvec2());
+                assert!((bilinear(&placed, uv) - expected).length() < 1e-11, "{scale} {offset}, clamp {clamp}: {uv}");
+            }
+            let nowhere = bilinear(&placed, DVec2::new(f64::NAN, 0.25));
+            assert_eq!(nowhere, bilinear(&placed, DVec2::new(0.0, 0.25)));
+        }
+    }
+}
+
+/// A lamp whose picture is there twice each way and shifted by half, which is what a floor below and a camera see of it: as of a lamp
+/// with the picture painted so; as of an opacity.
+#[test]
+fn a_lamp_with_a_placed_picture() {
+    let texel = |x: u32, y: u32| if x < 2 && y < 2 { [4.0, 1.0, 0.0, 1.0] } else { [0.5, 0.5, 1.0, 0.25] };
+    let image = crate::common::scenes::texture(4, 4, texel);
+    // What the first quarter of a turn each way holds, where the picture is looked up at 2 u + 0.5 and 2 v.
+    let painted = crate::common::scenes::texture(8, 8, |x, y| texel((x + 2) % 4, y % 4));
+    let scale = Vec2::splat(2.0);
+    let placed = Texture { transform: Affine2::from_scale_angle_translation(scale, 0.0, Vec2::X * 0.5), ..image };
+    let scene = |picture: &Texture| {
+        let mut scene = empty(8, 8);
+        scene.sensor = pinhole(Vec3::new(0.0, 3.0, 0.1), Vec3::ZERO, Vec3::Z, 60.0);
+        let floor = quad(Vec3::new(-4.0, 0.0, 4.0), Vec3::X * 8.0, Vec3::Z * -8.0);
+        add(&mut scene, floor, matte(Vec3::splat(0.5)), Affine3A::IDENTITY);
+        scene.textures.push(picture.clone().into());
+        let maps = Maps { emission: Some(0), opacity: Some(0), ..Maps::default() };
+        let panel = mapped_quad(Vec3::new(-0.75, 0.75, -0.75), Vec3::X * 1.5, Vec3::Z * 1.5);
+        add(&mut scene, panel, Material { maps, ..lamp(Vec3::splat(3.0)) }, Affine3A::IDENTITY);
+        scene
+    };
+    for light_sampling in [LightSampling::None, LightSampling::Mis] {
+        let [a, b] = [&placed, &painted].map(|picture| {
+            let mut scene = scene(picture);
+            estimator(&mut scene).light_sampling = light_sampling;
+            Reference::new(&scene)
+        });
+        // The same numbers, so the same samples.
+        for i in 0..64 * 20 {
+            let (found, expected) = (a.radiance(i % 64, i / 64).0, b.radiance(i % 64, i / 64).0);
+            assert!((found - expected).length() <= 1e-9 * (1.0 + expected.length()), "{i}: {found} {expected}");
+        }
     }
 }
 

@@ -81,12 +81,23 @@ fn materials_that_lack_the_same_share_a_warning() {
 
 #[test]
 fn what_is_not_modelled_is_a_warning_for_materials_in_use() {
-    let feature = "bump b.png\nmap_Ns c.png\nbump b.png\nPr 1\nd -halo 0.5\nmap_Kd -o 1 0 0 a.png\n";
+    let feature = "bump b.png\nmap_Ns c.png\nbump b.png\nPr 1\nd -halo 0.5\nmap_Kd -t 1 0 0 a.png\n";
     let scene = with_mtl(format!("newmtl m\n{feature}newmtl unused\n{feature}")).load("mesh.obj");
     let warnings: Vec<_> = scene.warnings.iter().filter(|warning| warning.contains("not modelled")).collect();
     assert_eq!(warnings.len(), 1, "{warnings:?}");
-    warned(&scene, &["`m`", "bump, map_Ns, Pr, d -halo, map_Kd -o"]);
+    warned(&scene, &["`m`", "bump, map_Ns, Pr, d -halo, map_Kd -t"]);
     assert_eq!(first_material(&scene).opacity, 0.5);
+}
+
+/// A mirror by Fresnel over a base is plastic: the mirror takes from the base only what it reflects, so that nothing has to be scaled. A
+/// mirror without an index of refraction takes all that it has.
+#[test]
+fn plastic_is_not_scaled() {
+    let (plastic, warnings) = read("Kd .8 .8 .8\nKs 1 1 1\nNs 1000\nNi 1.5\nd 1\nillum 5");
+    assert_eq!((plastic.lambert, plastic.reflection, plastic.eta), (Vec3::splat(0.8), Vec3::ONE, Some(1.5)));
+    assert!(warnings.is_empty(), "{warnings:?}");
+    let (mirror, warnings) = read("Kd .8 .8 .8\nKs 1 1 1\nNs 1000\nNi 1.5\nd 1\nillum 3");
+    assert!((mirror.lambert.x - 0.8 / 1.8).abs() < 1e-6 && warnings.len() == 1, "{mirror:?} {warnings:?}");
 }
 
 /// The first material after these statements.

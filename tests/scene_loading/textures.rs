@@ -1,7 +1,7 @@
 //! Textures: which image is found, and what becomes of its numbers.
 
 use super::*;
-use glam::Vec3;
+use glam::{Affine2, Vec2, Vec3};
 use image::{DynamicImage, ImageFormat, RgbImage, RgbaImage};
 use luminaire::scene::Texture;
 
@@ -282,4 +282,60 @@ fn scene_files_add_replace_and_remove_maps() {
     assert_eq!((first_material(&none).maps, first_material(&none).lambert), (Default::default(), Vec3::splat(0.8)));
     let folder = textured("").with("scene.toml", file("diffuse_map = \"no.png\""));
     folder.fails_at("scene.toml", "scene.toml", (13, 15), &["no.png", "No such file"]);
+}
+
+/// `-s` and `-o` place a picture, each map by its own numbers; one file is decoded once.
+#[test]
+fn maps_are_placed() {
+    let mtl = "Ke 1 1 1\nmap_Kd -s 2 2 1 -o 0.5 0 0 a.png\nmap_Ke -o 0.25 -2.5 a.png\nmap_Ka a.png\nmap_d -s 4 a.png";
+    let scene = textured(mtl).image("a.png", rgba(&[[255, 0, 0, 255], [0, 0, 0, 128]])).load("mesh.obj");
+    let maps = first_material(&scene).maps;
+    let place = |map: Option<u32>| scene.textures[map.expect("a map") as usize].transform;
+    let expected = |scale: (f32, f32), offset: (f32, f32)| {
+        Affine2::from_scale_angle_translation(Vec2::from(scale), 0.0, Vec2::from(offset))
+    };
+    assert_eq!(place(maps.lambert), expected((2.0, 2.0), (0.5, 0.0)));
+    // Whole turns say nothing.
+    assert_eq!(place(maps.emission), expected((1.0, 1.0), (0.25, -0.5)));
+    assert_eq!(place(maps.ambient), Affine2::IDENTITY);
+    assert_eq!(place(maps.opacity), expected((4.0, 1.0), (0.0, 0.0)));
+    let texels = |map: Option<u32>| scene.textures[map.expect("a map") as usize].texels.as_ptr();
+    assert_eq!((texels(maps.lambert), texels(maps.emission)), (texels(maps.ambient), texels(maps.ambient)));
+    assert_ne!(texels(maps.opacity), texels(maps.ambient), "a scalar has other texels");
+    assert_eq!(scene.textures.len(), 4);
+    assert!(scene.warnings.iter().all(|warning| !warning.contains("map_")), "{:?}", scene.warnings);
+
+    // The alpha of a placed map_Kd is where its colours are; where a picture ends, turns count.
+    let mtl = "map_Kd -clamp on -s 2 -o 1.5 0 a.png";
+    let scene = textured(mtl).image("a.png", rgba(&[[255, 0, 0, 255], [0, 0, 0, 128]])).load("mesh.obj");
+    let maps = first_material(&scene).maps;
+    assert_eq!(maps.opacity, maps.lambert);
+    assert_eq!(scene.textures[0].transform, expected((2.0, 1.0), (1.5, 0.0)));
+
+    let odd = textured("map_Kd -s 1e9 2 -o 0.5 -t 1 a.png\nmap_Ke -s 0 0 a.png").image("a.png", rgb(&[[1, 2, 3]]));
+    let scene = odd.load("mesh.obj");
+    assert_eq!(diffuse(&scene).transform, expected((1.0, 1.0), (0.5, 0.0)));
+    warned(&scene, &["mesh.mtl:2: map_Kd: -s needs numbers from -1e6 to 1e6; it is ignored"]);
+    warned(&scene, &["mesh.mtl:3: map_Ke: -s 0"]);
+    warned(&scene, &["not modelled, ignored: map_Kd -t"]);
+}
+
+/// The same in a scene file, by a table in the place of the name.
+#[test]
+fn a_scene_file_places_maps() {
+    let scene = |map: &str| {
+        let text = format!("[[object]]\nmesh = \"mesh.obj\"\n[[material]]\nname = \"m\"\ndiffuse_map = {map}\n");
+        textured("Kd 1 1 1").image("a.png", rgb(&[[1, 2, 3]])).with("scene.toml", text)
+    };
+    let placed = scene("{ image = \"a.png\", scale = [2, -3.5], offset = [0.5, 0] }").load("scene.toml");
+    let expected = Affine2::from_scale_angle_translation(Vec2::new(2.0, -3.5), 0.0, Vec2::X * 0.5);
+    assert_eq!(diffuse(&placed).transform, expected);
+    assert_eq!(diffuse(&scene("{ image = \"a.png\" }").load("scene.toml")).transform, Affine2::IDENTITY);
+    assert_eq!(first_material(&scene("{ image = \"\" }").load("scene.toml")).maps.lambert, None);
+    for wrong in
+        ["{ scale = [1, 2] }", "{ image = \"a.png\", scale = [0, 1] }", "{ image = \"a.png\", scal = [1, 1] }", "3"]
+    {
+        scene(wrong).fails_at("scene.toml", "scene.toml", (5, 15), &["name of an image", "from -1e6 to 1e6"]);
+    }
+    scene("{ image = \"b.png\" }").fails_at("scene.toml", "scene.toml", (5, 15), &["b.png"]);
 }

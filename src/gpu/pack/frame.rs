@@ -3,7 +3,7 @@
 use crate::gpu::layout;
 use crate::scene::{FilmSettings, Integrator, LuminaireTable, Projection, Scene, Sensor};
 use bytemuck::Zeroable;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 /// Sensor, film, integrator and environment of a scene.
 pub(in crate::gpu) fn frame(scene: &Scene, table: &LuminaireTable) -> layout::Frame {
@@ -17,9 +17,10 @@ pub(in crate::gpu) fn frame(scene: &Scene, table: &LuminaireTable) -> layout::Fr
         environment_width,
         environment_height,
         environment_rotation: turns(rotation),
+        least_probability: table.least_probability as f32,
         ..Zeroable::zeroed()
     };
-    aim(&mut frame, &scene.sensor, &scene.film);
+    aim(&mut frame, &scene.sensor, &scene.film, scene.world_bounds());
     estimate(&mut frame, &scene.integrator);
     frame
 }
@@ -36,8 +37,8 @@ pub(in crate::gpu) fn estimate(frame: &mut layout::Frame, integrator: &Integrato
     (frame.max_bounces, frame.albedo_threshold) = (max_bounces, albedo_threshold);
 }
 
-/// Puts the camera and the film into a frame.
-pub(in crate::gpu) fn aim(frame: &mut layout::Frame, sensor: &Sensor, film: &FilmSettings) {
+/// Puts the camera and the film into a frame, for a scene of these bounds.
+pub(in crate::gpu) fn aim(frame: &mut layout::Frame, sensor: &Sensor, film: &FilmSettings, bounds: (DVec3, DVec3)) {
     let Sensor { position, target, up, projection, lens } = *sensor;
     // In f64 like the reference: these are rounded once.
     let forward = (target.as_dvec3() - position.as_dvec3()).normalize();
@@ -48,11 +49,14 @@ pub(in crate::gpu) fn aim(frame: &mut layout::Frame, sensor: &Sensor, film: &Fil
         Projection::Perspective { fov } => (f64::from(fov).to_radians() / 2.0).tan(),
         Projection::Orthographic { height } => f64::from(height) / 2.0,
     };
-    frame.position = vec4(position);
+    let start = sensor.start(film, bounds);
+    frame.position = vec4((position.as_dvec3() + start * forward).as_vec3());
+    frame.start = start as f32;
     frame.forward = vec4(forward.as_vec3());
     frame.right = vec4((right * half * aspect).as_vec3());
     frame.up = vec4((true_up * half).as_vec3());
     (frame.lens_radius, frame.focus_distance) = lens.map_or((0.0, 1.0), |lens| (lens.radius, lens.focus_distance));
+    frame.lens_at_start = lens.map_or(1.0, |lens| (1.0 - start / f64::from(lens.focus_distance)) as f32);
     frame.lens_blades = lens.map_or(0.0, |lens| lens.blades as f32);
     frame.lens_rotation = lens.map_or(0.0, |lens| turns(lens.rotation));
     (frame.width, frame.height) = (film.width, film.height);

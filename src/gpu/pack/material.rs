@@ -1,7 +1,7 @@
 //! Materials, as the kernel has them.
 
 use crate::gpu::layout;
-use crate::scene::{LuminaireTable, Material, Scene};
+use crate::scene::{LuminaireTable, Material, Scene, coat_transmittance};
 use glam::Vec3;
 use std::f64::consts::PI;
 
@@ -11,6 +11,7 @@ pub(in crate::gpu) fn material(scene: &Scene, table: &LuminaireTable, index: usi
     let m = f64::from(material.exponent);
     // N(m), by which the lobe reflects no more than its albedo.
     let normalisation = (m + 2.0) * (m + 4.0) / (8.0 * PI * ((-m / 2.0).exp2() + m));
+    let coat = material.eta.filter(|_| material.is_coated()).map_or(1.0, |eta| coat_transmittance(eta.into()));
     let map = |map: Option<u32>| map.unwrap_or(layout::NONE);
     let maps = material.maps;
     let transmission = if material.eta.is_some() { material.transmission } else { Vec3::ZERO };
@@ -33,7 +34,7 @@ pub(in crate::gpu) fn material(scene: &Scene, table: &LuminaireTable, index: usi
         emission_map: map(maps.emission),
         opacity_map: map(maps.opacity),
         one_sided: u32::from(material.one_sided),
-        thin: u32::from(material.thin && transmission != Vec3::ZERO),
-        padding: 0,
+        thin: u32::from(material.is_sheet()),
+        coat_transmittance: coat as f32,
     }
 }

@@ -6,8 +6,55 @@ use ash::{khr, vk};
 use std::ffi::CStr;
 use std::sync::Arc;
 
-/// Storage buffers that the kernel binds.
-const STORAGE_BUFFERS: u32 = 5;
+/// What every kernel binds and takes: as many or more of what the shaders have, none above what Vulkan guarantees. A test holds it against the
+/// shaders.
+pub const NEEDS: Needs = Needs {
+    uniform_buffers: 1,
+    storage_buffers: 2,
+    texel_buffers: 16,
+    resources: 32,
+    push_constants: 32,
+    uniform_bytes: 1 << 14,
+    invocations: 64,
+};
+
+/// Numbers of resources in one shader, and sizes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Needs {
+    /// Uniform buffers.
+    pub uniform_buffers: u32,
+    /// Storage buffers.
+    pub storage_buffers: u32,
+    /// Uniform texel buffers, which count as sampled images.
+    pub texel_buffers: u32,
+    /// All of them together, with an acceleration structure.
+    pub resources: u32,
+    /// Bytes of push constants.
+    pub push_constants: u32,
+    /// Bytes of the uniform buffer.
+    pub uniform_bytes: u32,
+    /// Invocations of a workgroup, all in one row.
+    pub invocations: u32,
+}
+
+impl Needs {
+    /// What of this a device of these limits does not have, in words.
+    pub(in crate::gpu) fn missing(&self, limits: &vk::PhysicalDeviceLimits) -> Option<String> {
+        let row = limits.max_compute_work_group_invocations.min(limits.max_compute_work_group_size[0]);
+        let needs = [
+            ("uniform buffers in a shader", limits.max_per_stage_descriptor_uniform_buffers, self.uniform_buffers),
+            ("storage buffers in a shader", limits.max_per_stage_descriptor_storage_buffers, self.storage_buffers),
+            ("texel buffers in a shader", limits.max_per_stage_descriptor_sampled_images, self.texel_buffers),
+            ("texel buffers in a descriptor set", limits.max_descriptor_set_sampled_images, self.texel_buffers),
+            ("resources in a shader", limits.max_per_stage_resources, self.resources),
+            ("bytes of push constants", limits.max_push_constants_size, self.push_constants),
+            ("bytes in a uniform buffer", limits.max_uniform_buffer_range, self.uniform_bytes),
+            ("invocations in a workgroup", row, self.invocations),
+        ];
+        let short = needs.into_iter().find(|(_, offered, needed)| offered < needed);
+        short.map(|(what, offered, needed)| format!("{offered} {what} only; {needed} are needed"))
+    }
+}
 
 /// A device that the loader knows, with what it offers.
 pub struct PhysicalDevice {
@@ -173,11 +220,7 @@ impl PhysicalDevice {
         if self.queue_family.is_none() {
             return Err("no queue that runs compute shaders".into());
         }
-        let storage_buffers = self.limits.max_per_stage_descriptor_storage_buffers;
-        if storage_buffers < STORAGE_BUFFERS {
-            return Err(format!("{storage_buffers} storage buffers in a shader only; {STORAGE_BUFFERS} are needed"));
-        }
-        Ok(())
+        NEEDS.missing(&self.limits).map_or(Ok(()), Err)
     }
 
     /// The limits and features that matter, for `luminaire devices`.
@@ -210,8 +253,31 @@ fn rank(device_type: vk::PhysicalDeviceType, ray_query: bool) -> (u8, bool) {
 
 #[cfg(test)]
 mod tests {
-    use super::rank;
+    use super::{NEEDS, rank};
+    use ash::vk;
     use ash::vk::PhysicalDeviceType as Type;
+
+    /// The least that Vulkan guarantees is enough ("Required Limits" of the specification); less of anything is named.
+    #[test]
+    fn a_device_with_the_least_limits_is_usable() {
+        let least = vk::PhysicalDeviceLimits {
+            max_per_stage_descriptor_uniform_buffers: 12,
+            max_per_stage_descriptor_storage_buffers: 4,
+            max_per_stage_descriptor_sampled_images: 16,
+            max_descriptor_set_sampled_images: 96,
+            max_per_stage_resources: 128,
+            max_push_constants_size: 128,
+            max_uniform_buffer_range: 16384,
+            max_compute_work_group_invocations: 128,
+            max_compute_work_group_size: [128, 128, 64],
+            ..vk::PhysicalDeviceLimits::default()
+        };
+        assert_eq!(NEEDS.missing(&least), None);
+        let fewer = vk::PhysicalDeviceLimits { max_per_stage_descriptor_storage_buffers: 1, ..least };
+        assert_eq!(NEEDS.missing(&fewer).as_deref(), Some("1 storage buffers in a shader only; 2 are needed"));
+        let narrow = vk::PhysicalDeviceLimits { max_compute_work_group_size: [32, 32, 32], ..least };
+        assert_eq!(NEEDS.missing(&narrow).as_deref(), Some("32 invocations in a workgroup only; 64 are needed"));
+    }
 
     #[test]
     fn gpus_come_before_software_and_ray_queries_first() {

@@ -250,24 +250,35 @@ impl Draft {
     }
 }
 
-/// Scales the albedos so that no channel reflects and transmits more than it receives.
+/// Scales the albedos so that no channel reflects and transmits more than it receives. A coat, which reflects the share F, passes the share
+/// 1 - F on to the base and through it: there reflection has a bound of its own, and base and transmission share one.
 fn conserve_energy(material: &mut Material, textures: &Textures, warnings: &mut Vec<String>) {
     let largest = |map: Option<u32>| map.map_or(Vec3::ONE, |map| textures.range(map).largest);
     let (lambert_map, glossy_map) = (largest(material.maps.lambert), largest(material.maps.glossy));
-    let sum = |m: &Material| {
-        (m.lambert * lambert_map + m.glossy * glossy_map + m.reflection.max(m.transmission)).max_element()
-    };
+    let base = |m: &Material| m.lambert * lambert_map + m.glossy * glossy_map;
+    if material.is_coated() {
+        limit(material, [false, true, false], |m| m.reflection.max_element(), warnings);
+        limit(material, [true, false, true], |m| (base(m) + m.transmission).max_element(), warnings);
+    } else {
+        limit(material, [true; 3], |m| (base(m) + m.reflection.max(m.transmission)).max_element(), warnings);
+    }
+}
+
+/// Scales some of the albedos (lambert and glossy; reflection; transmission) so that `sum`, which is linear in them, is at most 1.
+fn limit(material: &mut Material, scaled: [bool; 3], sum: impl Fn(&Material) -> f32, warnings: &mut Vec<String>) {
     let before = sum(material);
     if before <= 1.0 {
         return;
     }
     let original = material.clone();
     let mut factor = 1.0 / before;
+    let [base, reflected, transmitted] = scaled;
     let scale = |material: &mut Material, factor: f32| {
-        material.lambert = original.lambert * factor;
-        material.glossy = original.glossy * factor;
-        material.reflection = original.reflection * factor;
-        material.transmission = original.transmission * factor;
+        let by = |scaled: bool| if scaled { factor } else { 1.0 };
+        material.lambert = original.lambert * by(base);
+        material.glossy = original.glossy * by(base);
+        material.reflection = original.reflection * by(reflected);
+        material.transmission = original.transmission * by(transmitted);
     };
     scale(material, factor);
     while sum(material) > 1.0 {
@@ -276,10 +287,12 @@ fn conserve_energy(material: &mut Material, textures: &Textures, warnings: &mut 
     }
     // Below that it is the rounding of the sum, which nobody needs to hear about.
     if before > 1.000_01 {
-        let (reflection, transmission) = (original.reflection.max_element(), original.transmission.max_element());
+        let part = |scaled: bool, albedo: Vec3| if scaled { albedo.max_element() } else { 0.0 };
+        let (reflection, transmission) =
+            (part(reflected, original.reflection), part(transmitted, original.transmission));
         let parts = [
-            (original.lambert.max_element(), "diffuse"),
-            (original.glossy.max_element(), "glossy"),
+            (part(base, original.lambert), "diffuse"),
+            (part(base, original.glossy), "glossy"),
             (reflection.max(transmission), if transmission > reflection { "transmission" } else { "reflection" }),
         ];
         let parts: Vec<_> = parts.iter().filter(|(albedo, _)| *albedo > 0.0).map(|(_, name)| *name).collect();
@@ -312,10 +325,43 @@ mod tests {
                 ..Draft::named("m")
             };
             let m = finish(&draft, &mut Vec::new());
-            assert!((m.lambert + m.glossy + m.reflection.max(m.transmission)).max_element() <= 1.0, "{m:?}");
+            assert!(m.is_coated() && m.reflection.max_element() <= 1.0, "{m:?}");
+            assert!((m.lambert + m.glossy + m.transmission).max_element() <= 1.0, "{m:?}");
             let ratio = m.lambert.x / x;
             assert!((m.transmission.y - ratio * x).abs() < 1e-6, "all by the same factor: {m:?}");
+            assert!((m.reflection.z - x.min(1.0)).abs() < 1e-6, "not scaled below what it may be: {m:?}");
+            let mirror = finish(&Draft { transmission: None, ..draft }, &mut Vec::new());
+            assert!((mirror.lambert + mirror.glossy + mirror.reflection).max_element() <= 1.0, "{mirror:?}");
+            let ratio = mirror.lambert.x / x;
+            assert!((mirror.reflection.z - ratio * x).abs() < 1e-6, "all by the same factor: {mirror:?}");
         }
+    }
+
+    /// A Fresnel mirror over a base is no more than white where base and mirror are; what exceeds that is said of the part that does.
+    #[test]
+    fn a_coated_base_is_scaled_only_where_it_exceeds_white() {
+        let plastic = Draft {
+            diffuse: Some(Vec3::splat(0.8)),
+            reflection: Some(Vec3::ONE),
+            eta: Some(1.5),
+            ..Draft::named("plastic")
+        };
+        let mut warnings = Vec::new();
+        let m = finish(&plastic, &mut warnings);
+        assert_eq!((m.lambert, m.reflection), (Vec3::splat(0.8), Vec3::ONE));
+        let glassy = Draft { transmission: Some(Vec3::splat(0.2)), ..plastic.clone() };
+        assert_eq!(finish(&glassy, &mut warnings).transmission, Vec3::splat(0.2));
+        assert!(warnings.is_empty(), "{warnings:?}");
+
+        let bright = Draft { diffuse: Some(Vec3::splat(2.0)), ..plastic.clone() };
+        assert_eq!(finish(&bright, &mut warnings).lambert, Vec3::ONE);
+        assert!(warnings.len() == 1 && warnings[0].contains("energy: diffuse albedo reaches 2"), "{warnings:?}");
+        let coat = Draft { reflection: Some(Vec3::splat(4.0)), ..plastic.clone() };
+        let m = finish(&coat, &mut warnings);
+        assert_eq!((m.lambert, m.reflection), (Vec3::splat(0.8), Vec3::ONE));
+        assert!(warnings.len() == 2 && warnings[1].contains("energy: reflection albedo reaches 4"), "{warnings:?}");
+        let mirror = finish(&Draft { eta: None, ..plastic }, &mut warnings);
+        assert!(warnings.len() == 3 && (mirror.reflection.x - 1.0 / 1.8).abs() < 1e-6, "beside each other: {mirror:?}");
     }
 
     #[test]

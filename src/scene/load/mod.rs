@@ -55,5 +55,13 @@ pub fn load(path: &Path) -> Result<Scene> {
         let message = format!("a coordinate of {largest:e} is too large; scale the scene to stay within 1e18");
         return Err(Error::scene(path, message));
     }
+    if scene.sensor.is_beyond_single_precision(&scene.film, (low, high)) {
+        scene.warnings.push(format!(
+            "{}: seen from so far away, or through so long a lens, a pixel is smaller than what single precision tells apart, and the \
+             scene reaches up to the camera, so that a GPU's picture is blurred or shifted: take --backend cpu, or cut the scene off \
+             before the camera",
+            path.display()
+        ));
+    }
     Ok(scene)
 }

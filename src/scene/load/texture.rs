@@ -3,7 +3,7 @@
 use super::texel_faults::{self, luminance};
 use crate::picture::decode::{CHUNK, ImageFile};
 use crate::scene::Texture;
-use glam::Vec3;
+use glam::{Affine2, Vec2, Vec3};
 use half::f16;
 use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
@@ -32,7 +32,14 @@ pub(super) struct MapFile {
     pub channel: Channel,
     /// The image's alpha is the opacity: colours that are multiplied by it already are divided by it.
     pub straight: bool,
+    /// `-s`: how often the picture is there between the coordinates 0 and 1, each way.
+    pub scale: Vec2,
+    /// `-o`: the place in the picture, as a share of its size, that the coordinates (0, 0) show.
+    pub offset: Vec2,
 }
+
+/// Largest scale and offset of a map, up or down: with more, single precision does not know which texel is meant.
+pub(super) const LARGEST_TRANSFORM: f32 = 1e6;
 
 /// Which channel of an image is a scalar.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -58,7 +65,7 @@ struct Key {
     straight: bool,
 }
 
-/// The textures loaded so far; one file with the same options is loaded once.
+/// The textures loaded so far; one file with the same options is loaded once, wherever its maps place it.
 #[derive(Debug, Default)]
 pub(super) struct Textures {
     /// What was loaded.
@@ -68,6 +75,8 @@ pub(super) struct Textures {
     /// Their texels.
     texels: u64,
     by_key: HashMap<Key, Option<u32>>,
+    /// By another texture with the same texels, and the bits of the transform.
+    by_place: HashMap<(u32, [u32; 6]), u32>,
     fallback: Option<u32>,
     said: HashSet<String>,
 }
@@ -83,6 +92,8 @@ impl MapFile {
             base: 0.0,
             gain: 1.0,
             channel: Channel::Any,
+            scale: Vec2::ONE,
+            offset: Vec2::ZERO,
             straight: false,
         }
     }
@@ -97,6 +108,13 @@ impl MapFile {
     /// The file, if there is one.
     pub(super) fn path(&self) -> Option<PathBuf> {
         Some(self.find().ok()?.0)
+    }
+
+    /// First the scale, then the offset: so Blender and three.js read and write `-s` and `-o`.
+    fn transform(&self) -> Affine2 {
+        // Where the picture repeats, whole turns say nothing, but cost digits.
+        let offset = if self.clamp { self.offset } else { self.offset - self.offset.trunc() };
+        Affine2::from_scale_angle_translation(self.scale, 0.0, offset)
     }
 
     /// The file, and a warning if it is not quite the one that is named.
@@ -150,17 +168,35 @@ impl Textures {
     /// warning, a checkerboard that nobody overlooks.
     pub(super) fn visible(&mut self, map: &MapFile, warnings: &mut Vec<String>) -> u32 {
         let texture = self.load(map, None, "a checkerboard of magenta and black shows instead", warnings);
-        texture.unwrap_or_else(|| self.fallback())
+        match texture {
+            Some(texture) => self.placed(texture, map),
+            None => self.fallback(),
+        }
     }
 
     /// The same, but none if the file cannot be used.
     pub(super) fn optional(&mut self, map: &MapFile, warnings: &mut Vec<String>) -> Option<u32> {
-        self.load(map, None, "there is no map then", warnings)
+        self.load(map, None, "there is no map then", warnings).map(|texture| self.placed(texture, map))
     }
 
     /// The texture of a map whose alpha is an opacity. None if the file cannot be used, which is a warning.
     pub(super) fn opacity(&mut self, map: &MapFile, warnings: &mut Vec<String>) -> Option<u32> {
-        self.load(map, Some(map.channel), "there is no map then", warnings)
+        self.load(map, Some(map.channel), "there is no map then", warnings).map(|texture| self.placed(texture, map))
+    }
+
+    /// A loaded texture where the map wants it: another one with the same texels, unless it is there already.
+    fn placed(&mut self, texture: u32, map: &MapFile) -> u32 {
+        let transform = map.transform();
+        let source = self.loaded[texture as usize].clone();
+        if source.transform == transform {
+            return texture;
+        }
+        let bits = transform.to_cols_array().map(f32::to_bits);
+        *self.by_place.entry((texture, bits)).or_insert_with(|| {
+            self.loaded.push(Texture { transform, ..Texture::clone(&source) }.into());
+            self.ranges.push(self.ranges[texture as usize]);
+            self.loaded.len() as u32 - 1
+        })
     }
 
     /// The extremes of one of the loaded textures.
@@ -177,7 +213,8 @@ impl Textures {
             let texels: Vec<_> = (0..SIDE * SIDE).map(colour).collect();
             let name = "(missing texture)".into();
             self.ranges.push(Range::of(&texels));
-            self.loaded.push(Texture { name, width: SIDE, height: SIDE, texels, clamp: false }.into());
+            let texels = texels.into();
+            self.loaded.push(Texture { name, width: SIDE, height: SIDE, texels, ..Texture::default() }.into());
             self.loaded.len() as u32 - 1
         })
     }
@@ -235,7 +272,8 @@ impl Textures {
                 let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
                 let (width, height) = (image.width, image.height);
                 self.ranges.push(Range::of(&texels));
-                self.loaded.push(Texture { name, width, height, texels, clamp: map.clamp }.into());
+                let (texels, clamp, transform) = (texels.into(), map.clamp, map.transform());
+                self.loaded.push(Texture { name, width, height, texels, clamp, transform }.into());
                 Some(self.loaded.len() as u32 - 1)
             }
             Err(reason) => {

@@ -13,6 +13,7 @@ use luminaire::glam::DVec3;
 use luminaire::gpu::specialization::KernelModel;
 use luminaire::reference::lost_light::lost_light;
 use luminaire::scene::{self, Environment, FilmSettings, Mesh, Projection, Scene};
+use std::collections::HashSet;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -184,7 +185,10 @@ fn memory(scene: &Scene) -> String {
             + size_of_val(&m.triangles[..])
     };
     let geometry: usize = scene.meshes.iter().map(|m| mesh(m)).sum();
-    let images: usize = scene.textures.iter().map(|texture| size_of_val(&texture.texels[..])).sum();
+    // Maps that show one image in several places share it.
+    let mut seen = HashSet::new();
+    let own = scene.textures.iter().filter(|texture| seen.insert(texture.texels.as_ptr()));
+    let images: usize = own.map(|texture| size_of_val(&texture.texels[..])).sum();
     let size = |bytes: f64| match bytes {
         b if b < f64::from(1 << 20) => format!("{:.1} KiB", b / f64::from(1 << 10)),
         b if b < f64::from(1 << 30) => format!("{:.1} MiB", b / f64::from(1 << 20)),
@@ -260,8 +264,15 @@ mod tests {
             ],
             materials: vec![material],
             textures: vec![
-                Texture { name: "wood.png".into(), width: 1, height: 1, texels: vec![Default::default()], clamp: true }
-                    .into(),
+                Texture {
+                    name: "wood.png".into(),
+                    width: 1,
+                    height: 1,
+                    texels: vec![Default::default()].into(),
+                    clamp: true,
+                    ..Texture::default()
+                }
+                .into(),
             ],
             luminaires: vec![Luminaire::Point { position: Vec3::Z, intensity: Vec3::ONE }],
             environment: Some(Environment { radiance: Vec3::splat(0.5), image: None, rotation: 0.0 }),

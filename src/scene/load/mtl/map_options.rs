@@ -1,6 +1,7 @@
 //! The options and the file name of an MTL texture statement.
 
-use crate::scene::load::texture::{Channel, MapFile};
+use crate::scene::load::texture::{Channel, LARGEST_TRANSFORM, MapFile};
+use glam::Vec2;
 use std::path::Path;
 
 /// What a texture statement says.
@@ -10,6 +11,8 @@ pub(super) struct MapStatement {
     pub map: MapFile,
     /// Options that would change the picture and are not modelled.
     pub ignored: Vec<&'static str>,
+    /// What else is to be said of the options, in words.
+    pub notes: Vec<String>,
 }
 
 /// Reads what follows the keyword: options, then a file name that may hold blanks. `at` is `FILE:LINE`.
@@ -19,7 +22,7 @@ pub(super) struct MapStatement {
 pub(super) fn parse(rest: &str, folder: &Path, at: String) -> Result<MapStatement, String> {
     let mut reader = Reader { rest: rest.trim() };
     let mut map = MapFile::plain(Vec::new(), folder, at);
-    let mut ignored = Vec::new();
+    let (mut ignored, mut notes) = (Vec::new(), Vec::new());
     let mut ignore = |option, changes: bool| {
         if changes && !ignored.contains(&option) {
             ignored.push(option);
@@ -41,8 +44,21 @@ pub(super) fn parse(rest: &str, folder: &Path, at: String) -> Result<MapStatemen
                 (map.base, map.gain) =
                     numbers.0.zip(numbers.1).ok_or_else(|| "-mm needs two numbers, base and gain".to_owned())?;
             }
-            "-o" => ignore("-o", reader.numbers(&option)?.iter().any(|n| *n != 0.0)),
-            "-s" => ignore("-s", reader.numbers(&option)?.iter().any(|n| *n != 1.0)),
+            // A third number is for solid textures. The specification's words for `-s` ("expanding or shrinking") leave open which is which: all
+            // who read it repeat the picture that often.
+            "-o" => match pair(&reader.numbers(&option)?, 0.0) {
+                Some(offset) => map.offset = offset,
+                None => notes.push(beyond("-o")),
+            },
+            "-s" => match pair(&reader.numbers(&option)?, 1.0) {
+                Some(scale) => {
+                    if scale.min_element() == 0.0 || scale.max_element() == 0.0 {
+                        notes.push("-s 0 shows one row or column of the picture everywhere".into());
+                    }
+                    map.scale = scale;
+                }
+                None => notes.push(beyond("-s")),
+            },
             "-t" => ignore("-t", reader.numbers(&option)?.iter().any(|n| *n != 0.0)),
             "-imfchan" => match reader.word().to_ascii_lowercase().as_str() {
                 "r" => map.channel = Channel::One(0),
@@ -72,7 +88,18 @@ pub(super) fn parse(rest: &str, folder: &Path, at: String) -> Result<MapStatemen
         map.names.push(inner.to_owned());
     }
     map.names.retain(|name| !name.is_empty());
-    Ok(MapStatement { map, ignored })
+    Ok(MapStatement { map, ignored, notes })
+}
+
+/// The first two of one to three numbers, the second being `missing` if there is none; none if one is too large.
+fn pair(numbers: &[f32], missing: f32) -> Option<Vec2> {
+    let pair = Vec2::new(numbers[0], numbers.get(1).copied().unwrap_or(missing));
+    // Written so that what is no number fails.
+    pair.abs().cmple(Vec2::splat(LARGEST_TRANSFORM)).all().then_some(pair)
+}
+
+fn beyond(option: &str) -> String {
+    format!("{option} needs numbers from -{LARGEST_TRANSFORM:e} to {LARGEST_TRANSFORM:e}; it is ignored")
 }
 
 struct Reader<'a> {
@@ -100,12 +127,17 @@ impl<'a> Reader<'a> {
     /// One to three numbers: the second and the third may be left out. The last word of all is the file name, even if it is a
     /// number.
     fn numbers(&mut self, option: &str) -> Result<Vec<f32>, String> {
-        let first = self.number().ok_or_else(|| format!("{option} needs one to three numbers"))?;
-        let mut numbers = vec![first];
-        while numbers.len() < 3 && self.rest.contains(char::is_whitespace) {
-            match self.number() {
-                Some(number) => numbers.push(number),
-                None => break,
+        let mut numbers = Vec::new();
+        while numbers.is_empty() || numbers.len() < 3 && self.rest.contains(char::is_whitespace) {
+            let before = self.rest;
+            // Not only finite ones, so that one that is not is taken for what it is and not for a file name.
+            match self.word().parse() {
+                Ok(number) => numbers.push(number),
+                Err(_) if numbers.is_empty() => return Err(format!("{option} needs one to three numbers")),
+                Err(_) => {
+                    self.rest = before;
+                    break;
+                }
             }
         }
         Ok(numbers)
@@ -145,8 +177,34 @@ mod tests {
         let statement = read("-clamp on -mm 0.25 2 -imfchan g -o 0 0 0 -s 1 -t 0.1 a.png");
         let map = &statement.map;
         assert_eq!((map.clamp, map.base, map.gain, map.channel), (true, 0.25, 2.0, Channel::One(1)));
-        assert_eq!(statement.ignored, ["-t"], "-o 0 and -s 1 change nothing");
-        assert_eq!(read("-s 2 2 -o 0 1 -imfchan z a.png").ignored, ["-s", "-o", "-imfchan"]);
+        assert_eq!((map.scale, map.offset), (Vec2::ONE, Vec2::ZERO));
+        assert_eq!(statement.ignored, ["-t"]);
+        assert_eq!(read("-t 0 0 0 -imfchan z a.png").ignored, ["-imfchan"], "-t 0 changes nothing");
+    }
+
+    /// One to three numbers, of which the third is for what has a depth; a second scale that is missing is 1, a second offset 0.
+    #[test]
+    fn places_are_read() {
+        for (rest, scale, offset) in [
+            ("-s 2 2 1 -o 0.5 0 0 a.png", (2.0, 2.0), (0.5, 0.0)),
+            ("-o 0.5 -s 2 a.png", (2.0, 1.0), (0.5, 0.0)),
+            ("-s 2 -3 a.png", (2.0, -3.0), (0.0, 0.0)),
+            ("-s 1 2 3 4.png", (1.0, 2.0), (0.0, 0.0)),
+            ("-o 0 1e3 2 wood.png", (1.0, 1.0), (0.0, 1e3)),
+        ] {
+            let statement = read(rest);
+            assert_eq!((statement.map.scale, statement.map.offset), (scale.into(), offset.into()), "{rest}");
+            assert!(statement.ignored.is_empty() && statement.notes.is_empty(), "{rest}: {statement:?}");
+        }
+        let zero = read("-s 0 2 a.png");
+        assert_eq!((zero.map.scale, zero.notes.len()), (Vec2::new(0.0, 2.0), 1));
+        let huge = read("-s 1e7 1 -o 0 -1e9 a.png");
+        assert_eq!((huge.map.scale, huge.map.offset, huge.notes.len()), (Vec2::ONE, Vec2::ZERO, 2));
+        for rest in ["-s inf 1 a.png", "-s 1 nan a.png", "-o -inf 0 nan a.png"] {
+            let bad = read(rest);
+            assert_eq!((&*bad.map.names[0], bad.notes.len()), ("a.png", 1), "{rest}");
+            assert_eq!((bad.map.scale, bad.map.offset), (Vec2::ONE, Vec2::ZERO), "{rest}");
+        }
     }
 
     #[test]

@@ -173,6 +173,9 @@ impl Reader<'_> {
                 for option in statement.ignored {
                     current.ignore(format!("{keyword} {option}"));
                 }
+                for note in statement.notes {
+                    self.warn(&format!("{keyword}: {note}"));
+                }
             }
             Err(message) => self.warn(&format!("{keyword}: {message}; ignored")),
         }

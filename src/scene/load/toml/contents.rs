@@ -1,7 +1,7 @@
 //! The tables `[[luminaire]]`, `[[material]]` and `[[object]]` of a scene file.
 
 use super::file::File;
-use super::tables::{LuminaireEntry, LuminaireKind, MaterialTable, ObjectTable, Scale};
+use super::tables::{LuminaireEntry, LuminaireKind, MapEntry, MaterialTable, ObjectTable, PlacedMap, Scale};
 use super::values::Triple;
 use crate::scene::load::loader::Loader;
 use crate::scene::load::material_draft::{Draft, DraftMaps, MapDraft};
@@ -73,16 +73,23 @@ impl File<'_> {
     }
 
     /// A map; the empty name removes what an MTL file says.
-    fn map(&self, name: &Option<Spanned<String>>) -> Result<MapDraft> {
-        let Some(name) = name else { return Ok(MapDraft::Unstated) };
-        if name.get_ref().is_empty() {
+    fn map(&self, entry: &Option<Spanned<MapEntry>>) -> Result<MapDraft> {
+        let Some(entry) = entry else { return Ok(MapDraft::Unstated) };
+        let (name, scale, offset) = match entry.get_ref() {
+            MapEntry::Image(name) => (name, None, None),
+            MapEntry::Placed(PlacedMap { image, scale, offset }) => (image, *scale, *offset),
+        };
+        if name.is_empty() {
             return Ok(MapDraft::Removed);
         }
-        let path = self.beside(name.get_ref());
+        let path = self.beside(name);
         // What is wrong with the image itself is a warning, as it is in an MTL file.
-        std::fs::metadata(&path).map_err(|error| self.error(name.span(), Error::read(&path, error).to_string()))?;
-        let at = format!("{}:{}", self.path.display(), line_and_column(self.text, name.span().start).0);
-        Ok(MapDraft::File(MapFile::plain(vec![name.get_ref().clone()], self.folder(), at)))
+        std::fs::metadata(&path).map_err(|error| self.error(entry.span(), Error::read(&path, error).to_string()))?;
+        let at = format!("{}:{}", self.path.display(), line_and_column(self.text, entry.span().start).0);
+        let plain = MapFile::plain(vec![name.clone()], self.folder(), at);
+        let scale = scale.map_or(plain.scale, |scale| scale.0);
+        let offset = offset.map_or(plain.offset, |offset| offset.0);
+        Ok(MapDraft::File(MapFile { scale, offset, ..plain }))
     }
 
     /// An `[[object]]`, and where it stands to every digit.

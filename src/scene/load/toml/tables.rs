@@ -1,8 +1,8 @@
 //! The tables of a scene file, as `scenes/README.md` describes them.
 
 use super::values::{
-    Angle, Blades, Bounces, Colour, Eta, Exact, Exponent, Exposure, FilterRadius, Finite, Fov, NotNegative, Pixels, Positive,
-    Probability, Samples, Triple, Unit,
+    Angle, Blades, Bounces, Colour, Eta, Exact, Exponent, Exposure, FilterRadius, Finite, Fov, MapOffset, MapScale,
+    NotNegative, Pixels, Positive, Probability, Samples, Triple, Unit,
 };
 use crate::scene::{AreaSampling, Directions, Extinction, Filter, LightSampling, Sampler};
 use ::toml::Spanned;
@@ -135,11 +135,29 @@ pub(super) struct MaterialTable {
     pub thin: Option<bool>,
     pub impulse_probability: Option<Probability>,
     pub opacity: Option<Unit>,
-    pub ambient_map: Option<Spanned<String>>,
-    pub diffuse_map: Option<Spanned<String>>,
-    pub glossy_map: Option<Spanned<String>>,
-    pub emission_map: Option<Spanned<String>>,
-    pub opacity_map: Option<Spanned<String>>,
+    pub ambient_map: Option<Spanned<MapEntry>>,
+    pub diffuse_map: Option<Spanned<MapEntry>>,
+    pub glossy_map: Option<Spanned<MapEntry>>,
+    pub emission_map: Option<Spanned<MapEntry>>,
+    pub opacity_map: Option<Spanned<MapEntry>>,
+}
+
+#[derive(Deserialize)]
+#[serde(
+    untagged,
+    expecting = "expected the name of an image, or { image = NAME, scale = [u, v], offset = [u, v] } with numbers from -1e6 to 1e6 and no scale of 0"
+)]
+pub(super) enum MapEntry {
+    Image(String),
+    Placed(PlacedMap),
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PlacedMap {
+    pub image: String,
+    pub scale: Option<MapScale>,
+    pub offset: Option<MapOffset>,
 }
 
 #[derive(Deserialize)]

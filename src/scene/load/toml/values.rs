@@ -2,7 +2,8 @@
 
 use crate::scene::Estimator;
 use crate::scene::load::material_draft::{ETAS, LARGEST_EXPONENT};
-use glam::{DVec3, Vec3};
+use crate::scene::load::texture::LARGEST_TRANSFORM;
+use glam::{DVec2, DVec3, Vec2, Vec3};
 use serde::Deserialize;
 
 /// Most pixels in a row or a column.
@@ -104,6 +105,16 @@ pub(super) struct Pixels(pub u32);
 #[serde(try_from = "i64")]
 pub(super) struct Bounces(pub u32);
 
+/// How often a map is there between the coordinates 0 and 1, each way; not 0.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(try_from = "[f64; 2]")]
+pub(super) struct MapScale(pub Vec2);
+
+/// The place in a map that the coordinates (0, 0) show.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(try_from = "[f64; 2]")]
+pub(super) struct MapOffset(pub Vec2);
+
 /// An index of refraction.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(try_from = "f64")]
@@ -144,6 +155,25 @@ impl TryFrom<[f64; 3]> for Colour {
             .filter(|c| c.is_finite() && c.min_element() >= 0.0)
             .map(Colour)
             .ok_or("expected linear RGB: three finite numbers, none of them negative")
+    }
+}
+
+impl TryFrom<[f64; 2]> for MapScale {
+    type Error = &'static str;
+    fn try_from(numbers: [f64; 2]) -> Checked<Self> {
+        let MapOffset(scale) = numbers.try_into()?;
+        let some = scale.x != 0.0 && scale.y != 0.0;
+        some.then_some(MapScale(scale)).ok_or("expected numbers other than 0")
+    }
+}
+
+impl TryFrom<[f64; 2]> for MapOffset {
+    type Error = &'static str;
+    fn try_from(numbers: [f64; 2]) -> Checked<Self> {
+        let pair = DVec2::from(numbers).as_vec2();
+        // Written so that what is no number fails.
+        let some = pair.abs().cmple(Vec2::splat(LARGEST_TRANSFORM)).all();
+        some.then_some(MapOffset(pair)).ok_or("expected numbers from -1e6 to 1e6")
     }
 }
 
