@@ -90,7 +90,9 @@ fn never_met(scene: &Scene) -> Option<String> {
 fn too_short(scene: &Scene, seen: &Seen) -> Option<String> {
     let share = seen.with_area.lost / seen.all();
     let (why, advice) = match (scene.integrator, scene.integrator.estimator().max_bounces) {
-        (Integrator::Simple { .. }, _) => ("the simple ray tracer has no bounces".into(), "take another estimator, such as `default`"),
+        (Integrator::Simple { .. }, _) => {
+            ("the simple ray tracer has no bounces".into(), "take another estimator, such as `default`")
+        }
         (_, limit) => (format!("max_bounces is {}", limit.unwrap_or(0)), "allow more bounces"),
     };
     (share >= LEAST_OF_ITS_OWN).then(|| {
@@ -258,10 +260,9 @@ impl Reference {
                 let at = self.luminaires.choice.choose(random[2]);
                 let (side, lost) = match &self.luminaires.entries[at] {
                     SampledLuminaire::Impulse(_) => (&mut seen.impulses[at], surfaces > 0),
-                    _ => (
-                        &mut seen.with_area,
-                        surfaces > 0 && max_bounces.is_some_and(|most| bounce + surfaces > most),
-                    ),
+                    _ => {
+                        (&mut seen.with_area, surfaces > 0 && max_bounces.is_some_and(|most| bounce + surfaces > most))
+                    }
                 };
                 *(if lost { &mut side.lost } else { &mut side.found }) += radiance * passed;
             }

@@ -68,7 +68,10 @@ fn mean(scene: &Scene) -> f64 {
 fn a_lamp_without_an_area_in_glass() {
     let mut bulb = with_ball(glass());
     bulb.luminaires = vec![point(Vec3::ZERO)];
-    says(&bulb, &["about 100 % of the light of [[luminaire]] 1 falls on glass or mirrors first", "a small mesh that emits"]);
+    says(
+        &bulb,
+        &["about 100 % of the light of [[luminaire]] 1 falls on glass or mirrors first", "a small mesh that emits"],
+    );
     assert_eq!(mean(&bulb), 0.0, "what is said is so");
     // It is the first luminaire that emits, but the second of the scene; the third is no matter.
     let mut three = bulb.clone();
@@ -113,7 +116,10 @@ fn the_sun_through_a_window_pane() {
     let mut room = room_with_a_window(glass());
     room.luminaires = vec![sun(Vec3::new(-1.0, -0.8, 0.1))];
     // Most of its light falls on roof and walls outside: only from within it is seen what is missing.
-    says(&room, &["about 100 % of the light of [[luminaire]] 1 on what the camera sees comes through glass", "[environment]"]);
+    says(
+        &room,
+        &["about 100 % of the light of [[luminaire]] 1 on what the camera sees comes through glass", "[environment]"],
+    );
     assert_eq!(mean(&room), 0.0);
     let mut shut = room_with_a_window(matte(Vec3::splat(0.2)));
     shut.luminaires = room.luminaires.clone();

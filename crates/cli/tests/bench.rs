@@ -147,7 +147,10 @@ fn a_run_and_its_baselines() {
     std::fs::write(path.join("other.json"), other.to_string()).unwrap();
     let output = bench(path, &[&words[..], &of_scenes, &["--out", "second", "--baseline", "other.json"]].concat());
     let text = said(&output);
-    assert!(text.contains("relMSE was mean of (a - b)^2 / (b^2 + 0.01) and is") && text.contains("are not compared"), "{text}");
+    assert!(
+        text.contains("relMSE was mean of (a - b)^2 / (b^2 + 0.01) and is") && text.contains("are not compared"),
+        "{text}"
+    );
     assert!(!text.lines().any(|line| line.trim().starts_with("WORSE") && line.contains("relmse")), "{text}");
     assert!(text.contains("build-seconds") || text.contains("\nagainst the baseline\n"), "{text}");
 

@@ -49,7 +49,10 @@ fn a_lost_luminaire_is_said_before_and_after() {
     let Said { out, err, stats } = render(&folder, &["bulb.toml", "--spp", "16"]);
     let sentence = "about 100 % of the light of [[luminaire]] 1 falls on glass or mirrors first";
     assert!(err.contains(&format!("warning: bulb.toml: {sentence}")), "{err}");
-    assert!(err.contains("the picture is black: none of 16 samples a pixel found any light; an earlier warning"), "{err}");
+    assert!(
+        err.contains("the picture is black: none of 16 samples a pixel found any light; an earlier warning"),
+        "{err}"
+    );
     assert!(out.contains("the error cannot be estimated: the picture is black") && !out.contains("0 %"), "{out}");
     assert_eq!((&stats["error"], &stats["black_share"]), (&Value::Null, &1.0.into()));
     assert_eq!(stats["lacks_light"], true);
@@ -80,8 +83,33 @@ fn a_camera_that_looks_away_sees_black() {
     assert!(out.contains("cannot be estimated"), "{out}");
     // There is nothing that a limit of the noise could wait for.
     let Said { out, stats, .. } = render(&folder, &["away.toml", "--noise", "0.1", "--error-map", "e.png"]);
-    assert!(out.contains("ended by --noise without an estimate") && out.contains("--noise 0.1 was not reached"), "{out}");
+    assert!(
+        out.contains("ended by --noise without an estimate") && out.contains("--noise 0.1 was not reached"),
+        "{out}"
+    );
     assert_eq!((&stats["end"], &stats["spp_most"]), (&"no-estimate".into(), &1024.into()));
+}
+
+/// A bright lamp in glass, which hardly a path finds, over a floor that another lamp lights evenly.
+#[test]
+fn a_limit_of_the_noise_that_fireflies_do_not_keep() {
+    let folder = folder();
+    let materials = std::fs::read_to_string(folder.path().join("s.mtl")).unwrap();
+    folder.write("s.mtl", &(materials + "newmtl bright\nKd 0 0 0\nKe 1e4 1e4 1e4\n"));
+    let ceiling = "mtllib s.mtl\nusemtl lamp\nv -8 7 -8\nv 8 7 -8\nv 8 7 8\nv -8 7 8\nf 1 2 3 4\n";
+    folder.write("ceiling.obj", ceiling);
+    folder.write("spark.obj", "mtllib s.mtl\nusemtl bright\nv 0.2 0 0\nv -0.2 0.2 0\nv 0 0 0.2\nf 1 2 3\n");
+    let text = std::fs::read_to_string(folder.path().join("bulb.toml")).unwrap();
+    let (before, rest) = text.split_once("[[luminaire]]").unwrap();
+    let objects = rest.split_once("[[object]]").unwrap().1;
+    let spark = "[[object]]\nmesh = \"spark.obj\"\nscale = 0.5\n[[object]]\nmesh = \"ceiling.obj\"\n";
+    folder.write("spark.toml", &format!("{before}[[object]]{objects}{spark}"));
+    let words = ["spark.toml", "--noise", "0.3", "--width", "24", "--height", "18"];
+    let Said { out, err, stats } = render(&folder, &words);
+    assert!(err.contains("warning: --noise 0.3 is reached without the fireflies ("), "{err}");
+    assert!(out.contains("ended by --noise") && out.contains("fireflies or very small lamps (with them"), "{out}");
+    assert!(stats["warnings"].to_string().contains("which hold most of the error: with them it is"), "{stats}");
+    assert!(stats["error"]["relative_with_fireflies"].as_f64().unwrap() > 0.3, "{stats}");
 }
 
 #[test]
@@ -93,7 +121,11 @@ fn no_noise_and_too_few_samples_are_said_as_such() {
     let one = render(&folder, &["open.toml", "--spp", "1"]);
     assert!(one.out.contains("the error cannot be estimated: one sample a pixel tells nothing of it"), "{}", one.out);
     let three = render(&folder, &["open.toml", "--spp", "3"]);
-    assert!(three.out.contains("estimated error") && three.out.contains("uncertain, from 3 samples a pixel"), "{}", three.out);
+    assert!(
+        three.out.contains("estimated error") && three.out.contains("uncertain, from 3 samples a pixel"),
+        "{}",
+        three.out
+    );
 }
 
 #[test]
@@ -102,7 +134,11 @@ fn a_png_that_shows_nothing_is_said() {
     let dim = std::fs::read_to_string(folder.path().join("s.mtl")).unwrap().replace("Ke 1 1 1", "Ke 1e-6 1e-6 1e-6");
     folder.write("s.mtl", &dim);
     let said = render(&folder, &["flat.toml", "--spp", "4"]);
-    assert!(said.err.contains("warning: a PNG shows nothing of this picture") && said.err.contains("--exposure 17"), "{}", said.err);
+    assert!(
+        said.err.contains("warning: a PNG shows nothing of this picture") && said.err.contains("--exposure 17"),
+        "{}",
+        said.err
+    );
     assert!(!render(&folder, &["flat.toml", "--spp", "4", "--exposure", "17"]).err.contains("warning"));
 }
 

@@ -30,11 +30,7 @@ pub fn describe(image: Source, reference: Source, comparison: &Comparison, flip:
     });
     let mut rows = vec![
         vec!["RMSE".into(), number(comparison.rmse), expected],
-        vec![
-            "relMSE".into(),
-            number(comparison.relmse),
-            format!("{REL_MSE}, {}", number(comparison.half_power_mean)),
-        ],
+        vec!["relMSE".into(), number(comparison.relmse), format!("{REL_MSE}, {}", number(comparison.half_power_mean))],
     ];
     let source = match comparison.error_source {
         ErrorSource::Pictures => "the standard errors in the files",

@@ -142,7 +142,17 @@ fn trace(
     }
     seconds.render = rendered.progress.seconds;
     seconds.device = rendered.device_seconds;
-    let outcome = Outcome { options, scene, renderer: &renderer, rendered, aovs: layers, saved, lacks_light, warnings: vec![], seconds };
+    let outcome = Outcome {
+        options,
+        scene,
+        renderer: &renderer,
+        rendered,
+        aovs: layers,
+        saved,
+        lacks_light,
+        warnings: vec![],
+        seconds,
+    };
     ending::finish(outcome, pictures, notes)
 }
 

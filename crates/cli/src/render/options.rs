@@ -171,7 +171,9 @@ mod tests {
         ] {
             assert_eq!(render(&bad).unwrap_err(), 2, "{bad:?}");
         }
-        for good in [["--spp", "4294967295"], ["--time", "0.5"], ["--exposure", "-2"], ["--noise", "1"], ["--max-bounces", "0"]] {
+        for good in
+            [["--spp", "4294967295"], ["--time", "0.5"], ["--exposure", "-2"], ["--noise", "1"], ["--max-bounces", "0"]]
+        {
             assert!(render(&good).is_ok(), "{good:?}");
         }
     }

@@ -72,7 +72,10 @@ pub fn black_picture(film: &Film, dark: bool) -> Option<String> {
     };
     Some(match share {
         1.0 => format!("the picture is black: none of {} found any light; {advice}", samples(film)),
-        _ => format!("{} of the pixels are black, where no sample found any light; if that is not meant: {advice}", share_in_words(share)),
+        _ => format!(
+            "{} of the pixels are black, where no sample found any light; if that is not meant: {advice}",
+            share_in_words(share)
+        ),
     })
 }
 
@@ -140,8 +143,7 @@ mod tests {
 
     #[test]
     fn few_samples_are_uncertain() {
-        let error =
-            ErrorEstimate { rmse: 0.1, rel_mse: 0.01, fireflies: 2, unknown: 3, rel_mse_with_fireflies: 0.25 };
+        let error = ErrorEstimate { rmse: 0.1, rel_mse: 0.01, fireflies: 2, unknown: 3, rel_mse_with_fireflies: 0.25 };
         let says = |samples| error_line(&film(samples, 40, 1.0), Some(error), false);
         assert_eq!(
             says(64),

@@ -24,7 +24,8 @@ impl Reference {
             let brightness = metrics::brightness(picture);
             let relative = |error: f32, radiance: f32| brightness.relative_square(error.into(), radiance.into());
             let pairs = errors.iter().zip(&picture.rgb).filter(|(e, b)| metrics::finite(e) && metrics::finite(b));
-            let all: Vec<f64> = pairs.flat_map(|(e, b)| (0..3).map(move |c| (e[c], b[c]))).map(|(e, b)| relative(e, b)).collect();
+            let all: Vec<f64> =
+                pairs.flat_map(|(e, b)| (0..3).map(move |c| (e[c], b[c]))).map(|(e, b)| relative(e, b)).collect();
             (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64)
         });
         Reference { picture: picture.clone(), own_error, words: "the picture that was given".into() }
