@@ -95,8 +95,7 @@ impl Film {
 
         let plausible =
             |pixel: usize| -> [f64; 3] { std::array::from_fn(|c| own[pixel][c].plausible(expected[pixel][c])) };
-        let brightness =
-            Brightness::of((0..own.len()).filter(|pixel| !firefly[*pixel]).flat_map(|pixel| plausible(pixel)));
+        let brightness = Brightness::of((0..own.len()).filter(|pixel| !firefly[*pixel]).flat_map(&plausible));
         let known = !brightness.is_black();
         let relative = |variance: f64, radiance: f64| brightness.relative_square(variance.sqrt(), radiance);
 
