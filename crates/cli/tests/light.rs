@@ -90,6 +90,28 @@ fn a_camera_that_looks_away_sees_black() {
     assert_eq!((&stats["end"], &stats["spp_most"]), (&"no-estimate".into(), &1024.into()));
 }
 
+/// A bright lamp in glass, which hardly a path finds, over a floor that another lamp lights evenly.
+#[test]
+fn a_limit_of_the_noise_that_fireflies_do_not_keep() {
+    let folder = folder();
+    let materials = std::fs::read_to_string(folder.path().join("s.mtl")).unwrap();
+    folder.write("s.mtl", &(materials + "newmtl bright\nKd 0 0 0\nKe 1e4 1e4 1e4\n"));
+    let ceiling = "mtllib s.mtl\nusemtl lamp\nv -8 7 -8\nv 8 7 -8\nv 8 7 8\nv -8 7 8\nf 1 2 3 4\n";
+    folder.write("ceiling.obj", ceiling);
+    folder.write("spark.obj", "mtllib s.mtl\nusemtl bright\nv 0.2 0 0\nv -0.2 0.2 0\nv 0 0 0.2\nf 1 2 3\n");
+    let text = std::fs::read_to_string(folder.path().join("bulb.toml")).unwrap();
+    let (before, rest) = text.split_once("[[luminaire]]").unwrap();
+    let objects = rest.split_once("[[object]]").unwrap().1;
+    let spark = "[[object]]\nmesh = \"spark.obj\"\nscale = 0.5\n[[object]]\nmesh = \"ceiling.obj\"\n";
+    folder.write("spark.toml", &format!("{before}[[object]]{objects}{spark}"));
+    let words = ["spark.toml", "--noise", "0.3", "--width", "24", "--height", "18"];
+    let Said { out, err, stats } = render(&folder, &words);
+    assert!(err.contains("warning: --noise 0.3 is reached without the fireflies ("), "{err}");
+    assert!(out.contains("ended by --noise") && out.contains("fireflies or very small lamps (with them"), "{out}");
+    assert!(stats["warnings"].to_string().contains("which hold most of the error: with them it is"), "{stats}");
+    assert!(stats["error"]["relative_with_fireflies"].as_f64().unwrap() > 0.3, "{stats}");
+}
+
 #[test]
 fn no_noise_and_too_few_samples_are_said_as_such() {
     let folder = folder();

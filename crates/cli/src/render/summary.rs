@@ -23,9 +23,12 @@ pub fn summary(outcome: &Outcome, written: &[PathBuf]) -> String {
     for path in written {
         text += &format!("{}: {} x {} pixels, {spp} samples a pixel{ended}\n", path.display(), film.width, film.height);
     }
-    if let Some(path) = options.error_map.as_ref().filter(|_| progress.error.is_some()) {
-        text +=
-            &format!("{}: estimated relative error of every pixel, 0.1 % (black) to 100 % (white)\n", path.display());
+    if let Some(path) = options.error_map.as_ref().filter(|_| film.most_samples() > 1) {
+        let unknown = if progress.error.is_some() { "" } else { "; here no pixel's is known: green" };
+        text += &format!(
+            "{}: estimated relative error of every pixel, 0.1 % (black) to 100 % (white){unknown}\n",
+            path.display()
+        );
     }
     if let Some(path) = &options.stats {
         text += &format!("{}: the figures of this run\n", path.display());
