@@ -30,7 +30,7 @@ impl Format {
             Some(other) => Err(Error::Usage(format!(
                 "{}: a picture cannot be written as .{other}: choose .png, .exr or .hdr{}",
                 path.display(),
-                conversion(&other)
+                conversion(other)
             ))),
             None => Err(Error::Usage(format!(
                 "{}: the name has no ending that says which format to write: add .png, .exr or .hdr",

@@ -204,7 +204,10 @@ fn short(text: &str) -> String {
 mod tests {
     use super::*;
 
-    fn opened(head: &str, size: &str, pixels: &[u8]) -> Result<(Vec<[f32; 3]>, (u32, u32), Vec<String>), String> {
+    /// Pixels, width and height, warnings.
+    type Read = (Vec<[f32; 3]>, (u32, u32), Vec<String>);
+
+    fn opened(head: &str, size: &str, pixels: &[u8]) -> Result<Read, String> {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.hdr");
         std::fs::write(&path, [format!("{head}\n\n{size}\n").as_bytes(), pixels].concat()).unwrap();

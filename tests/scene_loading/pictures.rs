@@ -278,3 +278,40 @@ fn formats_that_are_not_read_say_what_to_convert_with() {
         assert!(words.iter().all(|word| error.to_string().contains(word)), "{error}");
     }
 }
+
+/// Whatever is cut off or changed, there is an answer, soon, and no panic.
+#[test]
+fn damaged_pictures() {
+    let folder = Folder::new();
+    let path = folder.path("picture");
+    exr(&path, 2, &[[0.5; 4]; 2], true, |image, _| {
+        image.chromaticities = Some(Chromaticities {
+            red: Vec2(0.708, 0.292),
+            green: Vec2(0.170, 0.797),
+            blue: Vec2(0.131, 0.046),
+            white: Vec2(0.3127, 0.3290),
+        });
+    });
+    let openexr = std::fs::read(&path).expect("a file");
+    let radiance = b"#?RGBE\nEXPOSURE=4\nCOLORCORR=1 2 1\nPRIMARIES= .7 .3 .2 .8 .1 .0 .3 .3\n\n-X 2 +Y 1\n\x80\x40\x20\x82\x01\x02\x03\x78".to_vec();
+    let chromaticities =
+        [31_270u32, 32_900, 70_800, 29_200, 17_000, 79_700, 13_100, 4600].map(u32::to_be_bytes).concat();
+    let chunks: [(&[u8; 4], &[u8]); 2] = [GAMMA_1, (b"cHRM", &chromaticities)];
+    for bytes in [openexr, radiance, png(128, &chunks), png(128, &[LINEAR])] {
+        let read = |bytes: &[u8]| {
+            std::fs::write(&path, bytes).expect("a file");
+            luminaire::picture::read(&path)
+        };
+        assert!(read(&bytes).is_ok());
+        for length in 0..bytes.len() {
+            let _ = read(&bytes[..length]);
+        }
+        for at in 0..bytes.len() {
+            for bits in [0x01, 0x80, 0xff] {
+                let mut bytes = bytes.clone();
+                bytes[at] ^= bits;
+                let _ = read(&bytes);
+            }
+        }
+    }
+}

@@ -128,8 +128,8 @@ fn the_picture_is_found_among_layers() {
     );
     warns(vec![part("l", &["R", "G", "B"]), part("r", &["R", "G", "B"])], [1.0, 11.0, 21.0], "`l` is used, not `r`");
     warns(vec![part("a", &["c.R", "c.G", "c.B", "d.Y"])], [1.0, 11.0, 21.0], "`a.c` is used, not `a.d`");
-    let blender = ["V.DiffDir.R", "V.DiffDir.G", "V.DiffDir.B", "V.Combined.R", "V.Combined.G", "V.Combined.B"];
-    warns(vec![part("V", &blender)], [31.0, 41.0, 51.0], "`V.Combined` is used, not `V.DiffDir`;");
+    let blender = ["V.AO.R", "V.AO.G", "V.AO.B", "V.Combined.R", "V.Combined.G", "V.Combined.B"];
+    warns(vec![part("V", &blender)], [31.0, 41.0, 51.0], "`V.Combined` is used, not `V.AO`;");
     says(&plain(vec![part("a", &["x.Y", "x.RY", "x.BY"])]), "x.");
     says(&plain(vec![part("a", &["Y", "RY", "BY"])]), "convert the picture to RGB");
 }
