@@ -13,6 +13,7 @@ mod estimators;
 mod fallback;
 mod features;
 mod functions;
+mod glass;
 mod intersection;
 mod maps;
 mod pictures;

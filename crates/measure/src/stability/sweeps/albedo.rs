@@ -214,7 +214,11 @@ fn sweep(bench: &Workbench, steps: &Steps) -> Result<Sweep> {
     }
     charts.extend([length, noise]);
 
-    let mut cap = chart("cap", format!("Paths that would be longer than {LONGEST_PATH} bounces are lost"), Axis::linear("mean / truth"));
+    let mut cap = chart(
+        "cap",
+        format!("Paths that would be longer than {LONGEST_PATH} bounces are lost"),
+        Axis::linear("mean / truth"),
+    );
     let mut beyond = Vec::new();
     for backend in bench.backends() {
         let estimator = Estimator::default();
