@@ -134,7 +134,7 @@ fn bodies_that_are_not_closed_are_named() {
     let middle = "v 0.5 0 0\n".to_owned()
         + &written(&cube[1..2])
         + &written(&cube[3..])
-        + "f 1 9 2 6 5\n"
+        + "f 1 9 6\nf 9 2 6\nf 1 6 5\n"
         + &written(&cube[..1]);
     named(&(unit() + &middle), &["3 open edges"]);
     // A pane in a wall.
