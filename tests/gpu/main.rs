@@ -14,6 +14,7 @@ mod fallback;
 mod features;
 mod files;
 mod functions;
+mod glass;
 mod intersection;
 mod maps;
 mod pictures;

@@ -1,5 +1,6 @@
 //! What a user relies on when a scene is loaded: what loads, what is repaired with a warning, and what each error says.
 
+mod bodies;
 mod hostile;
 mod mtl;
 mod obj;

@@ -126,6 +126,13 @@ fn illum_3_5_and_8_are_mirrors_where_they_are_sharp() {
     assert_eq!(read("Ks 1 1 1\nillum 3").0.lambert, Vec3::ZERO, "a mirror alone is not grey");
 }
 
+/// The same without the warning that a single triangle is no body of glass.
+fn read_glass(mtl: &str) -> (Material, Vec<String>) {
+    let (material, mut warnings) = read(mtl);
+    warnings.retain(|warning| !warning.contains("not a closed body"));
+    (material, warnings)
+}
+
 #[test]
 fn extreme_numbers_are_clamped_or_ignored() {
     let (m, warnings) = read("Ks .5 .5 .5\nNs 2e8\nillum 2");
@@ -137,7 +144,7 @@ fn extreme_numbers_are_clamped_or_ignored() {
         assert!(warnings.iter().any(|w| w.contains("mesh.mtl:2: Ni") && w.contains("0.01 to 100")), "{warnings:?}");
     }
     for (ni, ns) in [(0.01, 0.0), (100.0, 1e8)] {
-        let (m, warnings) = read(&format!("Ni {ni:?}\nNs {ns:?}\nillum 7"));
+        let (m, warnings) = read_glass(&format!("Ni {ni:?}\nNs {ns:?}\nillum 7"));
         assert_eq!((m.eta, m.exponent, warnings.as_slice()), (Some(ni), ns, &[][..]));
     }
 }
@@ -151,7 +158,7 @@ fn illum_4_6_7_and_9_are_glass() {
         assert!(warnings.is_empty(), "{warnings:?}");
     }
     for black in ["", "Ks 0 0 0\nTf 0 0 0\n"] {
-        let (m, warnings) = read(&format!("{black}illum 7"));
+        let (m, warnings) = read_glass(&format!("{black}illum 7"));
         assert_eq!((m.reflection, m.transmission, m.eta), (Vec3::ONE, Vec3::ONE, Some(1.5)));
         assert!(warnings.len() == 1 && warnings[0].contains("Ni"), "{warnings:?}");
     }

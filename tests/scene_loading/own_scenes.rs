@@ -23,6 +23,14 @@ fn the_projects_scenes_load_without_a_warning() {
 }
 
 #[test]
+fn the_glass_of_the_projects_scenes_is_closed() {
+    for name in ["glass/glass.toml", "furnace/glass.toml"] {
+        let warnings = own(name).warnings;
+        assert!(!warnings.iter().any(|warning| warning.contains("glass")), "{name}: {warnings:?}");
+    }
+}
+
+#[test]
 fn the_cornell_box_is_closed_but_for_its_front_and_faces_inwards() {
     let scene = own("cornell/cornell.toml");
     let mesh = &scene.meshes[0];

@@ -23,7 +23,7 @@ fn every_key_is_read() {
                 [render]\r\nspp = 9\r\nseed = 4294967295\r\nexposure = -1.5\r\n[[object]]\r\nmesh = \"sub/mesh.obj\"\r\n\
                 name = \"x\"\r\nmaterial = \"y\"\r\n[[material]]\r\nname = \"y\"\r\nambient = [0.1, 0.1, 0.1]\r\n\
                 diffuse = [0.2, 0.2, 0.2]\r\nglossy = [0.3, 0.3, 0.3]\r\nexponent = 40\r\nemission = [1, 2, 3]\r\n\
-                reflection = [0.125, 0.125, 0.125]\r\ntransmission = [0.25, 0.25, 0.25]\r\neta = 1.25\r\n\
+                reflection = [0.125, 0.125, 0.125]\r\ntransmission = [0.25, 0.25, 0.25]\r\neta = 1.25\r\nthin = true\r\n\
                 impulse_probability = 0.75\r\nopacity = 0.5\r\none_sided = true\r\n\
                 [[luminaire]]\r\nkind = \"infinite\"\r\ndirection = [0, -2, 0]\r\nirradiance = [1, 2, 3]\r\n";
     let scene = Folder::new().with("sub/mesh.obj", TRIANGLE).with("scene.toml", text).load("scene.toml");
@@ -35,7 +35,7 @@ fn every_key_is_read() {
     assert_eq!(scene.objects[0].name, "x");
     let y = &scene.materials[scene.objects[0].material.expect("y") as usize];
     assert_eq!((y.ambient.x, y.lambert.x, y.glossy.x, y.exponent), (0.1, 0.2, 0.3, 40.0));
-    assert_eq!((y.reflection.x, y.transmission.x, y.eta), (0.125, 0.25, Some(1.25)));
+    assert_eq!((y.reflection.x, y.transmission.x, y.eta, y.thin), (0.125, 0.25, Some(1.25), true));
     assert_eq!((y.impulse_probability, y.opacity, y.one_sided), (Some(0.75), 0.5, true));
     let light = Luminaire::Infinite { direction: Vec3::NEG_Y, irradiance: Vec3::new(1.0, 2.0, 3.0) };
     assert_eq!(scene.luminaires, [light]);

@@ -7,10 +7,12 @@ use super::loader::listed;
 use crate::scene::{Mesh, Object, Scene, outward, widen};
 use glam::{DAffine3, DVec3, Vec3};
 use std::collections::{HashMap, HashSet};
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 /// Indices that multiply to this much of 1 around an edge are those of one body; files round them.
 const SAME_INDEX: f64 = 0.02;
+/// Faces that leave an edge in directions that differ by less, in radian, lie on each other.
+const SAME_ANGLE: f64 = 1e-5;
 /// Bodies that are inside out of which it is found out whether they are hollows in another: one at a time costs all triangles.
 const MOST_HOLLOWS: usize = 16;
 
@@ -56,6 +58,14 @@ pub(super) fn warnings(scene: &Scene) -> Vec<String> {
         let more = if more > 0 { format!(" and {more} more") } else { String::new() };
         let who = format!("object `{}`{more} ({file})", object.name);
         warnings.extend(glass.faults(scene, &who));
+        if (1..glass.faces.len()).contains(&glass.against) {
+            warnings.push(format!(
+                "{who}: {} of {} faces of glass ({}) are wound against their vertex normals, which are taken to say which side is outside",
+                glass.against,
+                glass.faces.len(),
+                glass.materials(scene, 0..glass.faces.len())
+            ));
+        }
         let hollows: Vec<_> = glass.inside_out().take(MOST_HOLLOWS).collect();
         let lost: Vec<_> = hollows.iter().filter(|body| !is_hollow(scene, &glasses, glass, object, body)).collect();
         if let Some(body) = lost.first() {
@@ -91,11 +101,16 @@ struct Glass {
     /// other materials share are in neither.
     open: Vec<(u32, u32)>,
     wrong: Vec<(u32, u32)>,
-    /// Faces that have the same three corners as one before them.
+    /// Faces that lie on others, beside an edge that they share.
     doubled: usize,
+    /// Faces that are wound against their vertex normals.
+    against: usize,
     /// For each surface, whether a fault or another material is at one of its edges.
     unsure: Vec<bool>,
 }
+
+/// An edge of a face: its ends in order, whether the face has them so, the number of the face.
+type Edge = (u32, u32, bool, u32);
 
 /// A surface that is closed.
 struct Body {
@@ -110,6 +125,7 @@ impl Glass {
         let bends: Vec<bool> = scene.materials.iter().map(|material| material.bends()).collect();
         let mut welded = Welded::default();
         let mut faces = Vec::new();
+        let mut against = 0;
         for triangle in &mesh.triangles {
             let material = material_of(triangle.material);
             if !bends[material as usize] {
@@ -118,27 +134,29 @@ impl Glass {
             let [a, b, c] = triangle.vertices.map(|v| welded.place(mesh.positions[v as usize]));
             let corners = triangle.vertices.map(|v| mesh.positions[v as usize].as_dvec3());
             let winding = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-            let corners = if outward(mesh, triangle).dot(winding) < 0.0 { [a, c, b] } else { [a, b, c] };
+            let turned = outward(mesh, triangle).dot(winding) < 0.0;
+            against += usize::from(turned);
+            let corners = if turned { [a, c, b] } else { [a, b, c] };
             let index = scene.materials[material as usize].eta.map_or(0.0, |eta| f64::from(eta).ln());
             faces.push(Face { corners, material, index, surface: 0 });
         }
-        let mut glass =
-            Glass { places: Vec::new(), faces, open: Vec::new(), wrong: Vec::new(), doubled: 0, unsure: Vec::new() };
+        let mut glass = Glass {
+            places: Vec::new(),
+            faces,
+            open: Vec::new(),
+            wrong: Vec::new(),
+            doubled: 0,
+            against,
+            unsure: Vec::new(),
+        };
         glass.find_edges(mesh, &mut welded, |material| !bends[material_of(material) as usize]);
         glass.places = welded.places;
-        let mut seen = HashSet::new();
-        for face in &glass.faces {
-            let mut corners = face.corners;
-            corners.sort_unstable();
-            glass.doubled += usize::from(!seen.insert(corners));
-        }
         glass
     }
 
     /// Fills in the edges and the surfaces. `other`: whether a material is none of the glass.
     fn find_edges(&mut self, mesh: &Mesh, welded: &mut Welded, other: impl Fn(u32) -> bool) {
-        // Each edge of each face: its ends in order, whether the face has them so, the face.
-        let mut edges = Vec::with_capacity(3 * self.faces.len());
+        let mut edges: Vec<Edge> = Vec::with_capacity(3 * self.faces.len());
         for (number, face) in (0..).zip(&self.faces) {
             let [a, b, c] = face.corners;
             edges.extend([(a, b), (b, c), (c, a)].map(|(a, b)| (a.min(b), a.max(b), a < b, number)));
@@ -146,6 +164,7 @@ impl Glass {
         edges.sort_unstable();
         let mut parents: Vec<u32> = (0..self.faces.len() as u32).collect();
         let mut faulty = Vec::new();
+        let mut doubled = HashSet::new();
         for edge in edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
             let around: f64 = edge
                 .iter()
@@ -158,11 +177,13 @@ impl Glass {
             if around.abs() > SAME_INDEX {
                 faulty.push((edge[0].0, edge[0].1, edge.len(), edge[0].3));
             }
+            doubled.extend(self.on_each_other(&welded.places, edge));
             for pair in edge.windows(2) {
                 let (a, b) = (root(&mut parents, pair[0].3), root(&mut parents, pair[1].3));
                 parents[a.max(b) as usize] = a.min(b);
             }
         }
+        self.doubled = doubled.len();
         let mut surfaces = 0;
         for number in 0..self.faces.len() {
             let parent = root(&mut parents, number as u32) as usize;
@@ -195,6 +216,37 @@ impl Glass {
         }
     }
 
+    /// Those of the faces at an edge that lie on each other there: they leave it in one direction.
+    fn on_each_other(&self, places: &[Vec3], edge: &[Edge]) -> Vec<u32> {
+        let place = |vertex: u32| places[vertex as usize].as_dvec3();
+        let (a, b) = (edge[0].0, edge[0].1);
+        let along = (place(b) - place(a)).normalize_or_zero();
+        let (x, y) = along.any_orthonormal_pair();
+        let mut angles: Vec<(f64, u32)> = Vec::with_capacity(edge.len());
+        for &(.., face) in edge {
+            let [p, q, r] = self.faces[face as usize].corners;
+            let opposite = if p != a && p != b {
+                p
+            } else if q != a && q != b {
+                q
+            } else {
+                r
+            };
+            let away = place(opposite) - place(a);
+            angles.push((y.dot(away).atan2(x.dot(away)), face));
+        }
+        angles.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        let mut found = Vec::new();
+        for (i, (angle, face)) in angles.iter().enumerate() {
+            let (next, other) = angles[(i + 1) % angles.len()];
+            let turn = (next - angle).rem_euclid(TAU);
+            if face != &other && turn.min(TAU - turn) < SAME_ANGLE {
+                found.extend([*face, other]);
+            }
+        }
+        found
+    }
+
     /// What is wrong with the edges and faces, as a warning.
     fn faults(&self, scene: &Scene, who: &str) -> Option<String> {
         let mut sheets = self.sheets();
@@ -207,16 +259,16 @@ impl Glass {
         count(self.open.len(), "open edge", "open edges");
         count(
             self.wrong.len(),
-            "edge between faces that are wound against each other",
-            "edges between faces that are wound against each other",
+            "edge between faces that are wound, or have vertex normals, against each other",
+            "edges between faces that are wound, or have vertex normals, against each other",
         );
-        count(self.doubled, "face that lies on another", "faces that lie on others");
+        count(self.doubled, "face that lies on another", "faces that lie on each other");
         let faulty: HashSet<u32> = self.open.iter().chain(&self.wrong).map(|(_, surface)| *surface).collect();
         if parts.is_empty() && sheets.is_empty() {
             return None;
         }
         if parts.is_empty() {
-            parts.push("a flat sheet between other materials".into());
+            parts.push("a flat sheet whose edges other materials share".into());
         }
         let all = faulty.is_empty() && sheets.is_empty();
         let in_question = |surface: u32| all || faulty.contains(&surface) || sheets.contains(&surface);
@@ -237,8 +289,8 @@ impl Glass {
             }
         };
         Some(format!(
-            "{who}: the glass of material {materials} is not a closed body ({}{place}): light that passes is too bright or too dark by the \
-             square of its index of refraction; {advice}",
+            "{who}: the glass of material {materials} is not a closed body ({}{place}): unless walls close it, light that passes is too \
+             bright or too dark by the square of its index of refraction; {advice}",
             parts.join(", ")
         ))
     }

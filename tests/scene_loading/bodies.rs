@@ -1,0 +1,190 @@
+//! Bodies of glass that are not closed, or not wound one way, are named; those that are right are not.
+
+use super::*;
+use std::fmt::Write;
+
+const GLASS: &str = "newmtl g\nKd 0 0 0\nillum 7\nNi 1.5\nnewmtl tinted\nKd 0 0 0\nTf 0.5 1 0.5\nillum 7\nNi 1.5\n\
+                     newmtl water\nKd 0 0 0\nillum 7\nNi 1.33\nnewmtl between\nKd 0 0 0\nillum 7\nNi 0.887\n\
+                     newmtl lid\nKd 0.5 0.5 0.5\n";
+
+/// Corners of a box, as vertices.
+fn corners(low: [f32; 3], high: [f32; 3]) -> String {
+    let mut text = String::new();
+    for i in 0..8 {
+        let pick = |axis: usize| if i >> axis & 1 == 0 { low[axis] } else { high[axis] };
+        writeln!(text, "v {} {} {}", pick(0), pick(1), pick(2)).expect("a string");
+    }
+    text
+}
+
+/// The faces of a box whose first corner is vertex `first`: -z, +z, -y, +y, -x, +x, outwards.
+fn faces(first: usize) -> [Vec<usize>; 6] {
+    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    faces.map(|face| face.iter().map(|corner| first + corner).collect())
+}
+
+fn written<'a>(faces: impl IntoIterator<Item = &'a Vec<usize>>) -> String {
+    faces
+        .into_iter()
+        .fold(String::new(), |text, face| text + "f" + &face.iter().map(|v| format!(" {v}")).collect::<String>() + "\n")
+}
+
+fn reversed(faces: &[Vec<usize>]) -> Vec<Vec<usize>> {
+    faces.iter().map(|face| face.iter().rev().copied().collect()).collect()
+}
+
+const UNIT: ([f32; 3], [f32; 3]) = ([0.0; 3], [1.0; 3]);
+
+/// Warnings about glass of an OBJ with this text.
+fn warnings(text: &str) -> Vec<String> {
+    let text = format!("mtllib g.mtl\nusemtl g\n{text}");
+    let scene = Folder::new().with("mesh.obj", text).with("g.mtl", GLASS).load("mesh.obj");
+    scene.warnings.into_iter().filter(|warning| warning.contains("glass")).collect()
+}
+
+#[track_caller]
+fn silent(text: &str) {
+    assert_eq!(warnings(text), Vec::<String>::new());
+}
+
+#[track_caller]
+fn named(text: &str, words: &[&str]) {
+    let warnings = warnings(text);
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
+    assert!(words.iter().all(|word| warnings[0].contains(word)), "{warnings:?}");
+}
+
+fn unit() -> String {
+    corners(UNIT.0, UNIT.1)
+}
+
+#[test]
+fn closed_bodies_are_not_warned_of() {
+    let cube = faces(1);
+    silent(&(unit() + &written(&cube)));
+    // Vertices split: each face has its own.
+    let v = |i: usize| unit().lines().nth(i - 1).expect("a corner").to_owned() + "\n";
+    let split = cube.iter().flatten().map(|corner| v(*corner)).collect::<String>();
+    silent(&(split + &written(&(0..6).map(|f| (4 * f + 1..4 * f + 5).collect()).collect::<Vec<Vec<usize>>>())));
+    // Two materials of one index on one body, and an opaque lid.
+    silent(&(unit() + &written(&cube[..3]) + "usemtl tinted\n" + &written(&cube[3..])));
+    silent(&(unit() + &written(&cube[..5]) + "usemtl lid\n" + &written(&cube[5..])));
+    // Two boxes that share an edge.
+    silent(&(unit() + &corners([1.0, 1.0, 0.0], [2.0, 2.0, 1.0]) + &written(&cube) + &written(&faces(9))));
+    // A hollow: inwards, within glass.
+    let hollow = reversed(&faces(9));
+    silent(&(unit() + &corners([0.25; 3], [0.75; 3]) + &written(&cube) + &written(&hollow)));
+    // Water in the hollow, in one piece with it or apart.
+    let water = corners([0.375; 3], [0.625; 3]) + "usemtl water\n" + &written(&faces(17));
+    silent(&(unit() + &corners([0.25; 3], [0.75; 3]) + &written(&cube) + &written(&hollow) + &water));
+    // Wound inwards as a whole, but with vertex normals that point outwards.
+    let normals = cube.iter().flatten().map(|_| "").collect::<String>() + &normals(1.0);
+    let with_normals: String = reversed(&cube)
+        .iter()
+        .map(|face| "f".to_owned() + &face.iter().map(|v| format!(" {v}//{v}")).collect::<String>() + "\n")
+        .collect();
+    silent(&(unit() + &normals + &with_normals));
+}
+
+/// A normal for each corner of the unit box.
+fn normals(sign: f32) -> String {
+    corners([-sign; 3], [sign; 3]).replace("v ", "vn ")
+}
+
+/// Glass beside water that share a face of which the index is that from one to the other.
+#[test]
+fn glass_and_water_that_share_a_face_are_closed() {
+    let (left, right) = (faces(1), faces(9));
+    let positions = unit() + &corners([1.0, 0.0, 0.0], [2.0, 1.0, 1.0]);
+    let water = "usemtl water\n".to_owned() + &written([&right[0], &right[1], &right[2], &right[3], &right[5]]);
+    // From glass (1.5) outwards into water: 1.5 / 1.33 behind the surface over in front; or turned around, 0.887.
+    let between = "usemtl between\n".to_owned() + &written(&reversed(&left[5..]));
+    silent(&(positions.clone() + &written(&left[..5]) + &water + &between));
+    named(&(positions + &written(&left[..5]) + &water), &["`g`, `water`", "4 edges between faces"]);
+}
+
+#[test]
+fn bodies_that_are_not_closed_are_named() {
+    let cube = faces(1);
+    named(
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n",
+        &["object `mesh", "material `g`", "4 open edges", "if it is a pane, state `thin = true`"],
+    );
+    // A cap left out; a hole.
+    named(&(unit() + &written(&cube[..5])), &["4 open edges", "close it"]);
+    // A face turned.
+    named(
+        &(unit() + &written(&cube[..5]) + &written(&reversed(&cube[5..]))),
+        &["4 edges between faces that are wound"],
+    );
+    // Two indices on one body.
+    named(&(unit() + &written(&cube[..5]) + "usemtl water\n" + &written(&cube[5..])), &["`g`, `water`", "4 edges"]);
+    // Everything twice: alike, and turned around.
+    named(&(unit() + &written(&cube) + &written(&cube)), &["24 faces that lie on each other"]);
+    named(&(unit() + &written(&cube) + &written(&reversed(&cube))), &["24 faces that lie on each other"]);
+    // The other diagonal of a square, either way around.
+    let other = |face: &[usize]| vec![face[1], face[2], face[3], face[0]];
+    let others: Vec<_> = cube.iter().map(|face| other(face)).collect();
+    named(&(unit() + &written(&cube) + &written(&others)), &["24 faces that lie on each other"]);
+    named(&(unit() + &written(&cube) + &written(&reversed(&others))), &["24 faces that lie on each other"]);
+    // A pane with two sides in one place.
+    let pane = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\nf 1 4 3 2\n";
+    named(pane, &["4 faces that lie on each other", "thin = true"]);
+    // An edge with a vertex in its middle on one side alone.
+    let middle = "v 0.5 0 0\n".to_owned()
+        + &written(&cube[1..2])
+        + &written(&cube[3..])
+        + "f 1 9 6\nf 9 2 6\nf 1 6 5\n"
+        + &written(&cube[..1]);
+    named(&(unit() + &middle), &["3 open edges"]);
+    // A pane in a wall.
+    named(
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\nf 1 2 3 4\nusemtl lid\nf 2 5 6 3\n",
+        &["3 open edges", "thin = true"],
+    );
+}
+
+#[test]
+fn bodies_that_are_inside_out_are_named() {
+    let inwards = reversed(&faces(1));
+    named(&(unit() + &written(&inwards)), &["a body of glass (`g`) is inside out"]);
+    // Beside a right one, which does not hold it.
+    let other = corners([2.0; 3], [3.0; 3]) + &written(&faces(9));
+    named(&(unit() + &written(&inwards) + &other), &["a body of glass (`g`) is inside out"]);
+    // Half of the faces against their vertex normals, which are right.
+    let mixed: String = (reversed(&faces(1)[..3]).iter().chain(&faces(1)[3..]))
+        .map(|face| "f".to_owned() + &face.iter().map(|v| format!(" {v}//{v}")).collect::<String>() + "\n")
+        .collect();
+    named(&(unit() + &normals(1.0) + &mixed), &["6 of 12 faces of glass (`g`) are wound against their vertex normals"]);
+}
+
+#[test]
+fn other_objects_may_hold_a_hollow_and_one_body_may_not_stand_twice() {
+    let files = || {
+        Folder::new()
+            .with("g.mtl", GLASS)
+            .with("cube.obj", format!("mtllib g.mtl\nusemtl g\n{}{}", unit(), written(&faces(1))))
+            .with("hollow.obj", format!("mtllib g.mtl\nusemtl g\n{}{}", unit(), written(&reversed(&faces(1)))))
+    };
+    let glass = |text: &str| {
+        let scene = files().with("scene.toml", format!("{SENSOR}{LIGHT}{text}")).load("scene.toml");
+        scene.warnings
+    };
+    let cube = "[[object]]\nmesh = \"cube.obj\"\n";
+    let hollow = "[[object]]\nmesh = \"hollow.obj\"\nscale = 0.5\ntranslate = [0.25, 0.25, 0.25]\n";
+    assert_eq!(glass(&format!("{cube}{hollow}")), Vec::<String>::new());
+    assert_eq!(glass(&format!("{cube}translate = [2, 0, 0]\n{cube}")), Vec::<String>::new());
+    let alone = glass(hollow);
+    assert!(alone.len() == 1 && alone[0].contains("inside out"), "{alone:?}");
+    let twice = glass(&format!("{cube}{cube}name = \"copy\"\n"));
+    assert!(twice.len() == 1 && twice[0].contains("objects `cube` and `copy` are the same body of glass"), "{twice:?}");
+    // What is said of a material counts, not what its file says.
+    let thin = "[[material]]\nname = \"g\"\nthin = true\n";
+    assert_eq!(glass(&format!("{hollow}{thin}")), Vec::<String>::new());
+}
+
+#[test]
+fn a_thin_material_without_transmission_is_warned_of() {
+    let warnings = scene("[[material]]\nname = \"default\"\nthin = true\n").load("scene.toml").warnings;
+    assert_eq!(warnings, ["material `default`: `thin` does nothing without `transmission`"]);
+}
