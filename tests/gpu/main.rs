@@ -15,11 +15,13 @@ mod features;
 mod functions;
 mod intersection;
 mod maps;
+mod overlapping_lamps;
 mod pictures;
 mod scattering;
 mod scenes;
 mod sensor;
 mod twins;
+mod vertex_colours;
 
 use common::skip;
 use luminaire::gpu::{Device, GpuTracer, Instance, validation_messages};

@@ -1,6 +1,10 @@
 //! What a user relies on when a scene is loaded: what loads, what is repaired with a warning, and what each error says.
 
+mod colours;
+mod far;
+mod free_form;
 mod hostile;
+mod lamps;
 mod mtl;
 mod obj;
 mod own_scenes;
