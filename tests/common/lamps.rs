@@ -57,7 +57,11 @@ pub fn files() -> Vec<(&'static str, String, &'static str)> {
             format!("{SQUARE}{DOWN}"),
             "[[object]]\nmesh = \"lamp.obj\"\nrotate = [0, 90, 0]\nscale = [-1, 1, 1]\n",
         ),
-        ("one-sided and placed twice", format!("{SQUARE}{DOWN}"), "[[object]]\nmesh = \"lamp.obj\"\n[[material]]\nname = \"lamp\"\none_sided = true\n"),
+        (
+            "one-sided and placed twice",
+            format!("{SQUARE}{DOWN}"),
+            "[[object]]\nmesh = \"lamp.obj\"\n[[material]]\nname = \"lamp\"\none_sided = true\n",
+        ),
         ("one-sided both ways", format!("{SQUARE}{DOWN}f -4 -2 -3\nf -4 -1 -2\n"), one_sided),
         ("one-sided both ways, other diagonal", format!("{SQUARE}{DOWN}f -1 -2 -3 -4\n"), one_sided),
         (

@@ -22,7 +22,8 @@ fn one_lamp_is_counted_once() {
         on_every_backend(|backend| {
             let found = total(&render(&mut backend.tracer(&scene), 4, 4, 4096, 16));
             assert!(
-                (found.mean / expected() - 1.0).abs() < 0.04 && (found.mean - expected()).abs() < 5.0 * found.error + 1e-3,
+                (found.mean / expected() - 1.0).abs() < 0.04
+                    && (found.mean - expected()).abs() < 5.0 * found.error + 1e-3,
                 "{name}, {light_sampling:?}, {}: {} +- {} instead of {}",
                 backend.name(),
                 found.mean,

@@ -36,11 +36,16 @@ fn painted_ones_are_read_from_comments() {
     let vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
     let block = "#MRGB ffff000000ff8000\n#MRGB ff0000ff\n";
     let expected = [Vec3::X, Vec3::new(1.0, 0.215_861, 0.0), Vec3::Z];
-    for text in [format!("{vertices}{block}{FACE}"), format!("{block}{vertices}{FACE}"), format!("{vertices}{FACE}{block}")] {
+    for text in
+        [format!("{vertices}{block}{FACE}"), format!("{block}{vertices}{FACE}"), format!("{vertices}{FACE}{block}")]
+    {
         assert!(near(&colours(&text), &expected), "{text}: {:?}", colours(&text));
     }
     warned(&obj(format!("{vertices}#MRGB ffzz\n{FACE}")).load("mesh.obj"), &["mesh.obj:4", "no colour"]);
-    warned(&obj(format!("{vertices}#MRGB ffff0000{0}{0}{0}\n{FACE}", "ff00ff00")).load("mesh.obj"), &["1 colour(s)", "more than"]);
+    warned(
+        &obj(format!("{vertices}#MRGB ffff0000{0}{0}{0}\n{FACE}", "ff00ff00")).load("mesh.obj"),
+        &["1 colour(s)", "more than"],
+    );
 }
 
 #[test]
@@ -49,7 +54,10 @@ fn white_and_wrong_ones_are_none() {
     let wrong = obj(format!("v 0 0 0 1 nan 0\nv 1 0 0 1 x 1\nv 0 1 0 0 0 1\n{FACE}")).load("mesh.obj");
     warned(&wrong, &["mesh.obj:1", "white", "1 more"]);
     assert!(near(&wrong.meshes[0].colours, &[Vec3::ONE, Vec3::ONE, Vec3::Z]));
-    warned(&obj(format!("v 0 0 0 1 -1 0\nv 1 0 0 1 1 1\nv 0 1 0 0 0 1\n{FACE}")).load("mesh.obj"), &["1 vertex colour(s)", "outside"]);
+    warned(
+        &obj(format!("v 0 0 0 1 -1 0\nv 1 0 0 1 1 1\nv 0 1 0 0 0 1\n{FACE}")).load("mesh.obj"),
+        &["1 vertex colour(s)", "outside"],
+    );
 }
 
 /// They are the diffuse colour where nothing else is said, and multiply it where something is.
@@ -64,7 +72,9 @@ fn they_multiply_the_diffuse_albedo() {
     // Another mesh without colours keeps the grey.
     let both = obj(&text).with("plain.obj", TRIANGLE).with(
         "scene.toml",
-        format!("{SENSOR}{LIGHT}[[object]]\nmesh = \"mesh.obj\"\n[[object]]\nmesh = \"plain.obj\"\ntranslate = [0, 0, 1]\n"),
+        format!(
+            "{SENSOR}{LIGHT}[[object]]\nmesh = \"mesh.obj\"\n[[object]]\nmesh = \"plain.obj\"\ntranslate = [0, 0, 1]\n"
+        ),
     );
     let scene = both.load("scene.toml");
     let lambert = |object: usize| {

@@ -50,7 +50,8 @@ fn looks_alike(scene: &Scene, near: &Scene) {
     assert_eq!(scene.triangle_count(), near.triangle_count());
     assert_eq!(scene.warnings, [""; 0]);
     let (found, expected) = (picture(scene), picture(near));
-    let differing = found.iter().zip(&expected).filter(|(a, b)| (**a - **b).abs().max_element() > 1e-3 * b.max_element());
+    let differing =
+        found.iter().zip(&expected).filter(|(a, b)| (**a - **b).abs().max_element() > 1e-3 * b.max_element());
     // Samples at an edge may fall on its other side.
     let differing = differing.count();
     assert!(differing <= 4, "{differing} of {} pixels", found.len());
@@ -68,8 +69,7 @@ fn a_far_scene_looks_as_the_same_one_at_the_origin() {
         // The mesh is near, the object is far.
         let place = format!("{OBJECT}translate = [{}, {}, {}]\n", at.x, at.y, at.z);
         looks_alike(&obj(wall(DVec3::ZERO)).with("scene.toml", file(at, &place)).load("scene.toml"), &near);
-        let matrix =
-            format!("{OBJECT}matrix = [[1, 0, 0, {}], [0, 1, 0, {}], [0, 0, 1, {}]]\n", at.x, at.y, at.z);
+        let matrix = format!("{OBJECT}matrix = [[1, 0, 0, {}], [0, 1, 0, {}], [0, 0, 1, {}]]\n", at.x, at.y, at.z);
         looks_alike(&obj(wall(DVec3::ZERO)).with("scene.toml", file(at, &matrix)).load("scene.toml"), &near);
         // The mesh is far, and the object brings it back.
         let back = format!("{OBJECT}translate = [{}, {}, {}]\n", -at.x, -at.y, -at.z);
@@ -84,7 +84,9 @@ fn a_far_scene_looks_as_the_same_one_at_the_origin() {
 fn neighbours_share_an_origin() {
     let next = DVec3::new(10.0, 0.0, 0.0);
     let objects = format!("{OBJECT}[[object]]\nmesh = \"next.obj\"\n");
-    let load = |at: DVec3| obj(wall(at)).with("next.obj", wall(at + next)).with("scene.toml", file(at, &objects)).load("scene.toml");
+    let load = |at: DVec3| {
+        obj(wall(at)).with("next.obj", wall(at + next)).with("scene.toml", file(at, &objects)).load("scene.toml")
+    };
     let far = load(UTM);
     assert!(far.objects.iter().all(|object| object.object_to_world == glam::Affine3A::IDENTITY));
     assert_eq!(far.meshes[0].positions[1], far.meshes[1].positions[0]);
@@ -109,7 +111,10 @@ fn ordinary_scenes_are_not_touched() {
     let scene = obj(text).with("scene.toml", format!("{SENSOR}{LIGHT}{OBJECT}translate = [0.1, 0.2, 0.3]\n"));
     let scene = scene.load("scene.toml");
     assert_eq!(scene.origin, DVec3::ZERO);
-    assert_eq!(scene.meshes[0].positions, [Vec3::new(10.1, 0.3, 0.0), Vec3::new(11.7, 0.1, 0.0), Vec3::new(10.3, 1.9, 0.0)]);
+    assert_eq!(
+        scene.meshes[0].positions,
+        [Vec3::new(10.1, 0.3, 0.0), Vec3::new(11.7, 0.1, 0.0), Vec3::new(10.3, 1.9, 0.0)]
+    );
     assert_eq!(scene.objects[0].object_to_world, glam::Affine3A::from_translation(Vec3::new(0.1, 0.2, 0.3)));
 }
 

@@ -9,11 +9,21 @@ const CURVES: &str = "vp 0.2 0.3\ncstype rat bspline\ndeg 2 2\nsurf -1 2 -2 2 \\
 #[test]
 fn curves_and_surfaces_are_named() {
     let scene = obj(format!("{TRIANGLE}{CURVES}l 1 2\nl 2 3\np 1\n")).load("mesh.obj");
-    warned(&scene, &["mesh.obj:5", "free-form", "`cstype`", "`surf`", "`curv`", "`curv2`", "`trim`", "2 `parm`", "polygons"]);
+    warned(
+        &scene,
+        &["mesh.obj:5", "free-form", "`cstype`", "`surf`", "`curv`", "`curv2`", "`trim`", "2 `parm`", "polygons"],
+    );
     warned(&scene, &["mesh.obj:16", "line (`l`)", "1 more"]);
     warned(&scene, &["mesh.obj:18", "point (`p`)"]);
     let error = obj(format!("{}{CURVES}l 1 2\nbleh\n", TRIANGLE.replace("f 1 2 3", ""))).error("mesh.obj").to_string();
-    for part in ["no face with 3 or more corners", "3 vertices", "1 lines (`l`)", "`surf`", "`curv`", "1 lines with unknown keywords"] {
+    for part in [
+        "no face with 3 or more corners",
+        "3 vertices",
+        "1 lines (`l`)",
+        "`surf`",
+        "`curv`",
+        "1 lines with unknown keywords",
+    ] {
         assert!(error.contains(part), "{part} is not in {error}");
     }
 }
@@ -50,11 +60,17 @@ fn lines_end_as_on_any_system() {
 #[test]
 fn numbers_that_are_none_by_their_many_names() {
     for word in ["-1.#IND00", "1.#QNAN", "1.#INF", "-1.#INF00", "nan(ind)", "-nan(ind)", "1.#SNAN", "nan", "inf"] {
-        let scene = obj(format!("vt {word} 0\nvt 1 0\nvn 0 {word} 1\nvn 0 0 1\n{}", TRIANGLE.replace("f 1 2 3", "f 1/1/1 2/2/2 3/2/2")));
+        let scene = obj(format!(
+            "vt {word} 0\nvt 1 0\nvn 0 {word} 1\nvn 0 0 1\n{}",
+            TRIANGLE.replace("f 1 2 3", "f 1/1/1 2/2/2 3/2/2")
+        ));
         let scene = scene.load("mesh.obj");
         warned(&scene, &["mesh.obj:1", "not finite"]);
         warned(&scene, &["mesh.obj:3", "normal", "not finite"]);
         obj_fails(&format!("{TRIANGLE}v 0 {word} 0\n"), 5, &["not finite", word]);
-        warned(&with_mtl(format!("newmtl m\nKd {word} 0 0\nNs {word}\n")).load("mesh.obj"), &["mesh.mtl:2", "Kd", "finite"]);
+        warned(
+            &with_mtl(format!("newmtl m\nKd {word} 0 0\nNs {word}\n")).load("mesh.obj"),
+            &["mesh.mtl:2", "Kd", "finite"],
+        );
     }
 }

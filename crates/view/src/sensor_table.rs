@@ -67,11 +67,13 @@ mod tests {
     #[test]
     fn far_from_the_origin_a_written_camera_is_read_back_too() {
         let folder = tempfile::tempdir().unwrap();
-        let mesh = "v 412345.678 5654321.234 98.5\nv 412346.678 5654321.234 98.5\nv 412345.678 5654322.234 98.5\nf 1 2 3\n";
+        let mesh =
+            "v 412345.678 5654321.234 98.5\nv 412346.678 5654321.234 98.5\nv 412345.678 5654322.234 98.5\nf 1 2 3\n";
         std::fs::write(folder.path().join("a.obj"), mesh).unwrap();
         let path = folder.path().join("a.toml");
         let object = "[[object]]\nmesh = \"a.obj\"\n";
-        let sensor = "[sensor]\nposition = [412346.1, 5654321.5, 103.75]\ntarget = [412346.0, 5654321.6, 98.5]\nfov = 40\n";
+        let sensor =
+            "[sensor]\nposition = [412346.1, 5654321.5, 103.75]\ntarget = [412346.0, 5654321.6, 98.5]\nfov = 40\n";
         std::fs::write(&path, format!("{sensor}{object}")).unwrap();
         let scene = load(&path).unwrap();
         assert!(scene.origin.y > 5e6 && scene.sensor.position.length() < 20.0, "{:?}", scene.sensor);

@@ -171,10 +171,24 @@ mod tests {
 
     #[test]
     fn numbers_that_are_none_have_many_names() {
-        for word in ["nan", "-nan", "NaN", "nan(ind)", "-nan(ind)", "nan(snan)", "-1.#IND00", "1.#QNAN", "1.#SNAN", "1.#IND", "+1.#QNAN0"] {
+        for word in [
+            "nan",
+            "-nan",
+            "NaN",
+            "nan(ind)",
+            "-nan(ind)",
+            "nan(snan)",
+            "-1.#IND00",
+            "1.#QNAN",
+            "1.#SNAN",
+            "1.#IND",
+            "+1.#QNAN0",
+        ] {
             assert!(parse_number(word).is_some_and(f64::is_nan), "{word}");
         }
-        for (word, value) in [("1.#INF", f64::INFINITY), ("-1.#INF00", f64::NEG_INFINITY), ("1.#J", f64::INFINITY), ("2.5", 2.5)] {
+        for (word, value) in
+            [("1.#INF", f64::INFINITY), ("-1.#INF00", f64::NEG_INFINITY), ("1.#J", f64::INFINITY), ("2.5", 2.5)]
+        {
             assert_eq!(parse_number(word), Some(value), "{word}");
         }
         for word in ["", "x", "1,5", "1.5.#INF", "3.1+e2", "nano", "#INF"] {

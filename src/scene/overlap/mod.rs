@@ -11,7 +11,7 @@ mod union;
 use self::edits::Edits;
 use self::face::{Face, Relation};
 use self::union::{MOST_UNITED, union};
-use super::{Material, Maps, Scene, widen};
+use super::{Maps, Material, Scene, widen};
 use glam::{DVec3, Vec3};
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
@@ -213,7 +213,9 @@ impl Merger<'_> {
             }
             self.equal(first, index);
             let kept = kept_with.entry(first).or_default();
-            for other in kept.iter().copied().filter(|other| self.emits(*other) == self.emits(index)).collect::<Vec<_>>() {
+            for other in
+                kept.iter().copied().filter(|other| self.emits(*other) == self.emits(index)).collect::<Vec<_>>()
+            {
                 if !self.dropped[index] && self.alike(other, index) {
                     self.equal(other, index);
                 }
@@ -464,9 +466,9 @@ impl Merger<'_> {
                 if budget == 0 || !dark[material as usize] {
                     continue;
                 }
-                let corners = triangle.vertices.map(|v| {
-                    to_world.transform_point3(mesh.positions[v as usize].as_dvec3()).as_vec3a()
-                });
+                let corners = triangle
+                    .vertices
+                    .map(|v| to_world.transform_point3(mesh.positions[v as usize].as_dvec3()).as_vec3a());
                 let around = Aabb::from_points(&corners);
                 if !around.intersect_aabb(&bounds) {
                     continue;
@@ -521,14 +523,8 @@ impl Report {
     /// A warning for each kind of thing that was found.
     fn sentences(&self, path: &str) -> Vec<String> {
         let kinds = [
-            (
-                &self.same,
-                "that emit lie on others of the same light: they are dropped, and the light is counted once",
-            ),
-            (
-                &self.united,
-                "that emit cover each other in a plane: they are cut anew so that each place emits once",
-            ),
+            (&self.same, "that emit lie on others of the same light: they are dropped, and the light is counted once"),
+            (&self.united, "that emit cover each other in a plane: they are cut anew so that each place emits once"),
             (
                 &self.back_to_back,
                 "of one-sided lamps lie back to back with others of the same light: they are dropped, and the others shine both ways",

@@ -5,7 +5,9 @@ use luminaire::scene::{Luminaire, LuminaireTable, Material, Mesh, SampledLuminai
 
 /// Meshes and what they have.
 pub(super) fn meshes(scene: &Scene) -> Vec<Vec<String>> {
-    let head = ["name", "triangles", "vertices", "normals", "texture coordinates", "vertex colours"].map(String::from).to_vec();
+    let head = ["name", "triangles", "vertices", "normals", "texture coordinates", "vertex colours"]
+        .map(String::from)
+        .to_vec();
     let mesh = |m: &Mesh| {
         let yes = |empty: bool| if empty { "no" } else { "yes" }.to_owned();
         vec![

@@ -5,8 +5,8 @@ use std::path::Path;
 
 /// Statements of free-form geometry: the format's own, and its older ones.
 const FREE_FORM: [&str; 21] = [
-    "bmat", "bsp", "bzp", "cdc", "cdp", "con", "cstype", "ctech", "curv", "curv2", "deg", "end", "hole", "parm", "res", "scrv", "sp", "stech",
-    "step", "surf", "trim",
+    "bmat", "bsp", "bzp", "cdc", "cdp", "con", "cstype", "ctech", "curv", "curv2", "deg", "end", "hole", "parm", "res",
+    "scrv", "sp", "stech", "step", "surf", "trim",
 ];
 /// So many different words are named.
 const MOST_WORDS: usize = 12;
@@ -74,7 +74,8 @@ impl Contents {
             "free-form curves and surfaces are not modelled and left out ({}); convert them to polygons in the program that made them",
             self.free_form.counted()
         );
-        let calls = format!("{} would read another file or run a command, which is never done; skipped", self.calls.named());
+        let calls =
+            format!("{} would read another file or run a command, which is never done; skipped", self.calls.named());
         let unknown = match self.unknown.words.as_slice() {
             [(word, _)] => format!("a line with the keyword `{word}`, which is not modelled, is skipped"),
             _ => format!("a line with a keyword that is not modelled ({}) is skipped", self.unknown.named()),
@@ -93,7 +94,11 @@ impl Contents {
     /// What a file has instead of faces, for the error that it has none.
     pub(super) fn instead(&self, vertices: usize) -> String {
         let mut parts = vec![format!("{vertices} vertices")];
-        for (words, one) in [(&self.lines, "lines (`l`)"), (&self.points, "points (`p`)"), (&self.unknown, "lines with unknown keywords")] {
+        for (words, one) in [
+            (&self.lines, "lines (`l`)"),
+            (&self.points, "points (`p`)"),
+            (&self.unknown, "lines with unknown keywords"),
+        ] {
             if words.count > 0 {
                 parts.push(format!("{} {one}", words.count));
             }

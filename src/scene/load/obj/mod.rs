@@ -71,10 +71,7 @@ pub(super) fn read(path: &Path, how: Reading) -> Result<Obj> {
     text.contents.warn(path, &mut warnings);
     if mesh.triangles.is_empty() {
         let why = match lost.no_area + lost.flattened {
-            0 => format!(
-                "it has no face with 3 or more corners (there are {} in it)",
-                text.contents.instead(vertices)
-            ),
+            0 => format!("it has no face with 3 or more corners (there are {} in it)", text.contents.instead(vertices)),
             n if lost.flattened > 0 => format!(
                 "all of its {n} triangles have zero area, {} of them because they are too small for single precision so far \
                  from the middle of the file",
@@ -174,7 +171,8 @@ fn build(text: &mut ObjText, colours: &[Vec3]) -> (Mesh, FilePlace, Lost) {
             }
             return;
         }
-        let least = [b - a, c - b, a - c].map(|edge| edge.abs().max_element()).into_iter().fold(f64::INFINITY, f64::min);
+        let least =
+            [b - a, c - b, a - c].map(|edge| edge.abs().max_element()).into_iter().fold(f64::INFINITY, f64::min);
         let reach = a.abs().max(b.abs()).max(c.abs()).max_element();
         lost.blurred += usize::from(least < Lost::STEPS * f64::from(f32::EPSILON) * reach);
         mesh.triangles.push(Triangle { vertices, material });
