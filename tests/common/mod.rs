@@ -3,6 +3,7 @@
 
 pub mod devices;
 pub mod directions;
+pub mod lamps;
 pub mod scenes;
 pub mod statistics;
 

@@ -17,11 +17,13 @@ mod functions;
 mod glass;
 mod intersection;
 mod maps;
+mod overlapping_lamps;
 mod pictures;
 mod scattering;
 mod scenes;
 mod sensor;
 mod twins;
+mod vertex_colours;
 
 use common::skip;
 use luminaire::gpu::{Device, GpuTracer, Instance, validation_messages};

@@ -1,7 +1,11 @@
 //! What a user relies on when a scene is loaded: what loads, what is repaired with a warning, and what each error says.
 
 mod bodies;
+mod colours;
+mod far;
+mod free_form;
 mod hostile;
+mod lamps;
 mod mtl;
 mod obj;
 mod own_scenes;

@@ -70,7 +70,8 @@ fn corners_keep_their_texture_coordinates_and_normals() {
 #[test]
 fn polygons_that_make_no_sense_are_a_warning_with_their_line() {
     let bow_tie = polygon(&[[0.0, 0.0, 0.0], [2.0, 2.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]]).load("mesh.obj");
-    assert_eq!(bow_tie.triangle_count(), 2);
+    // The two triangles of the guess overlap. They glow, so each place counts once.
+    assert_eq!(bow_tie.triangle_count(), 3);
     warned(&bow_tie, &["mesh.obj:7", "crosses or covers itself", "guess"]);
     let mut bent = NOTCHED;
     bent[4][2] = 1.0;

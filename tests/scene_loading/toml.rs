@@ -74,7 +74,7 @@ fn a_matrix_is_three_rows() {
 #[test]
 fn materials_are_overridden_by_name() {
     let folder = Folder::new()
-        .with("a.obj", format!("mtllib a.mtl\nusemtl m\n{TRIANGLE}usemtl lost\nf 1 2 3\n"))
+        .with("a.obj", format!("mtllib a.mtl\nusemtl m\n{TRIANGLE}usemtl lost\nv 1 1 0\nf 2 3 4\n"))
         .with("a.mtl", "newmtl m\nKd .5 .4 .3\nKe 0 0 0\n")
         .with("b.obj", format!("mtllib b.mtl\nusemtl m\n{TRIANGLE}"))
         .with("b.mtl", "newmtl m\nKd .1 .1 .1\n")
@@ -82,8 +82,8 @@ fn materials_are_overridden_by_name() {
         .with(
             "scene.toml",
             format!(
-                "{SENSOR}[[object]]\nmesh = \"a.obj\"\n[[object]]\nmesh = \"b.obj\"\n[[object]]\nmesh = \"c.obj\"\n\
-                 [[material]]\nname = \"m\"\nemission = [5, 5, 5]\n[[material]]\nname = \"lost\"\ndiffuse = [0.25, 0.0, 0.0]\n\
+                "{SENSOR}[[object]]\nmesh = \"a.obj\"\n[[object]]\nmesh = \"b.obj\"\ntranslate = [0, 0, 1]\n\
+                 [[object]]\nmesh = \"c.obj\"\ntranslate = [0, 0, 2]\n[[material]]\nname = \"m\"\nemission = [5, 5, 5]\n[[material]]\nname = \"lost\"\ndiffuse = [0.25, 0.0, 0.0]\n\
                  [[material]]\nname = \"default\"\ndiffuse = [0.3, 0.3, 0.3]\n[[material]]\nname = \"typo\"\n"
             ),
         );

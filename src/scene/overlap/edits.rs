@@ -21,6 +21,8 @@ struct ObjectEdits {
     moved: BTreeMap<u32, DVec3>,
     /// Corners in world space, and a material.
     added: Vec<([DVec3; 3], u32)>,
+    /// Triangles of which a second one is made that faces the other way, with its material and by how much it moves in world space.
+    turned: Vec<(u32, u32, DVec3)>,
 }
 
 impl Edits {
@@ -39,6 +41,11 @@ impl Edits {
     /// A new triangle of this object, flat, counter-clockwise where it is outside.
     pub(super) fn add(&mut self, object: u32, corners: [DVec3; 3], material: u32) {
         self.objects.entry(object).or_default().added.push((corners, material));
+    }
+
+    /// A second triangle that faces the other way.
+    pub(super) fn turn(&mut self, object: u32, triangle: u32, material: u32, by: DVec3) {
+        self.objects.entry(object).or_default().turned.push((triangle, material, by));
     }
 
     /// How many triangles the meshes have that have to be made anew.
@@ -68,7 +75,7 @@ impl Edits {
             scene.meshes.push(Arc::new(mesh));
             let object = &mut scene.objects[*index as usize];
             object.mesh = number;
-            if !edits.materials.is_empty() || !edits.added.is_empty() {
+            if edits.changes_materials() {
                 object.material = None;
             }
             if plain {
@@ -91,7 +98,12 @@ impl Edits {
 
 impl ObjectEdits {
     fn only_removes(&self) -> bool {
-        self.materials.is_empty() && self.moved.is_empty() && self.added.is_empty()
+        !self.changes_materials() && self.moved.is_empty()
+    }
+
+    /// Whether triangles of the object no longer have all the same material, if they had.
+    fn changes_materials(&self) -> bool {
+        !(self.materials.is_empty() && self.added.is_empty() && self.turned.is_empty())
     }
 }
 
@@ -99,7 +111,7 @@ impl ObjectEdits {
 fn edited(mesh: &Mesh, object: &Object, edits: &ObjectEdits) -> Mesh {
     let to_object = widen(object.object_to_world).inverse();
     let mut new = Mesh { triangles: Vec::with_capacity(mesh.triangles.len()), ..mesh.clone() };
-    let own_materials = !edits.materials.is_empty() || !edits.added.is_empty();
+    let own_materials = edits.changes_materials();
     for (index, triangle) in (0..).zip(&mesh.triangles) {
         if edits.removed.contains(&index) {
             continue;
@@ -110,23 +122,14 @@ fn edited(mesh: &Mesh, object: &Object, edits: &ObjectEdits) -> Mesh {
             triangle.material = edits.materials.get(&index).copied().unwrap_or(all);
         }
         if let Some(by) = edits.moved.get(&index) {
-            let by = to_object.transform_vector3(*by);
-            for vertex in &mut triangle.vertices {
-                let old = *vertex as usize;
-                *vertex = new.positions.len() as u32;
-                new.positions.push((mesh.positions[old].as_dvec3() + by).as_vec3());
-                if !mesh.normals.is_empty() {
-                    new.normals.push(mesh.normals[old]);
-                }
-                if !mesh.uvs.is_empty() {
-                    new.uvs.push(mesh.uvs[old]);
-                }
-                if !mesh.colours.is_empty() {
-                    new.colours.push(mesh.colours[old]);
-                }
-            }
+            triangle.vertices = triangle.vertices.map(|v| moved(&mut new, v, to_object.transform_vector3(*by), 1.0));
         }
         new.triangles.push(triangle);
+    }
+    for (index, material, by) in &edits.turned {
+        let [a, b, c] = mesh.triangles[*index as usize].vertices;
+        let vertices = [a, c, b].map(|v| moved(&mut new, v, to_object.transform_vector3(*by), -1.0));
+        new.triangles.push(Triangle { vertices, material: *material });
     }
     for (corners, material) in &edits.added {
         let places = corners.map(|p| to_object.transform_point3(p).as_vec3());
@@ -151,4 +154,20 @@ fn edited(mesh: &Mesh, object: &Object, edits: &ObjectEdits) -> Mesh {
         new.triangles.push(Triangle { vertices, material: *material });
     }
     new
+}
+
+/// A new vertex like an old one, moved, with its normal times `side`.
+fn moved(mesh: &mut Mesh, vertex: u32, by: DVec3, side: f32) -> u32 {
+    let old = vertex as usize;
+    mesh.positions.push((mesh.positions[old].as_dvec3() + by).as_vec3());
+    if !mesh.normals.is_empty() {
+        mesh.normals.push(side * mesh.normals[old]);
+    }
+    if !mesh.uvs.is_empty() {
+        mesh.uvs.push(mesh.uvs[old]);
+    }
+    if !mesh.colours.is_empty() {
+        mesh.colours.push(mesh.colours[old]);
+    }
+    mesh.positions.len() as u32 - 1
 }

@@ -24,6 +24,10 @@ const MOST_LEAVES: usize = 1 << 22;
 const PAIRS: usize = 64;
 /// Other triangles that are compared with the lamps.
 const MOST_OTHERS: usize = 50_000_000;
+/// A group with more pairs that overlap is left as it is, but for eight for each triangle: it is no lamp but a tangle.
+const MOST_OVERLAPS: usize = 20_000;
+/// Pairs of triangles of one group that are compared.
+const MOST_IN_GROUP: usize = 1 << 22;
 /// Triangles of meshes that are made anew.
 const MOST_COPIED: usize = 50_000_000;
 
@@ -45,6 +49,7 @@ struct Report {
     apart: Found,
     hidden: Found,
     unresolved: Found,
+    in_plane: Found,
     undecided: Found,
     unsearched: bool,
 }
@@ -57,10 +62,15 @@ struct Merger<'a> {
     dropped: Vec<bool>,
     /// By face: it is one-sided, and from now on shines both ways.
     both_ways: Vec<bool>,
-    /// By face: it is moved off its plane, to its outward side.
+    /// By face: it is moved off its plane, to its outward side, and to both sides if it shines both ways.
     lifted: Vec<bool>,
+    /// Materials that only differ by which sides shine: the new ones, and by the old one's number and sides the new one's.
+    variants: Vec<Material>,
+    variant_of: BTreeMap<(u32, bool), u32>,
     /// Faces of one light that overlap, as a forest: the parent of each.
     parent: Vec<usize>,
+    /// By face: with how many later ones of its light it overlaps.
+    overlaps: Vec<u32>,
     report: Report,
 }
 
@@ -80,40 +90,25 @@ impl Scene {
             dropped: vec![false; count],
             both_ways: vec![false; count],
             lifted: vec![false; count],
+            variants: Vec::new(),
+            variant_of: BTreeMap::new(),
             parent: (0..count).collect(),
+            overlaps: vec![0; count],
             report: Report::default(),
         };
         merger.exactly_equal();
         let mut edits = Edits::default();
         merger.compare(&mut edits);
         merger.unite(&mut edits);
-        let Merger { faces, dropped, both_ways, lifted, report, .. } = merger;
-        let mut two_sided: BTreeMap<u32, u32> = BTreeMap::new();
-        let mut materials = Vec::new();
-        for (index, face) in faces.iter().enumerate() {
-            if dropped[index] {
-                edits.remove(face.object, face.triangle);
-                continue;
-            }
-            if lifted[index] {
-                edits.shift(face.object, face.triangle, face.normal * face.lift());
-            }
-            if both_ways[index] {
-                let next = (self.materials.len() + materials.len()) as u32;
-                let material = *two_sided.entry(face.material).or_insert(next);
-                if material == next {
-                    materials.push(Material { one_sided: false, ..self.materials[face.material as usize].clone() });
-                }
-                edits.give(face.object, face.triangle, material);
-            }
-        }
+        merger.edit(&mut edits);
+        let Merger { report, variants, .. } = merger;
         let path = self.path.display().to_string();
         if edits.copies(self) > MOST_COPIED {
             return vec![format!(
                 "{path}: lamps lie on each other in so many instances that they are left as they are: their light is counted twice"
             )];
         }
-        self.materials.extend(materials);
+        self.materials.extend(variants);
         edits.apply(self);
         report.sentences(&path)
     }
@@ -304,7 +299,8 @@ impl Merger<'_> {
             self.lifted[b] = true;
             let face = self.faces[b].clone();
             self.note(|report| &mut report.apart, 1, &face, "");
-        } else if self.alike(a, b) && self.one_sided(a) == self.one_sided(b) && self.is_plain(a) && self.is_plain(b) {
+        } else if self.alike(a, b) && self.one_sided(a) == self.one_sided(b) {
+            self.overlaps[a] += 1;
             let (a, b) = (self.root(a), self.root(b));
             self.parent[a.max(b)] = a.min(b);
         } else {
@@ -334,7 +330,7 @@ impl Merger<'_> {
         face
     }
 
-    /// Puts what faces of one light cover together in their place.
+    /// Of faces of one light that overlap, leaves those that cover the whole by themselves, or puts in their place what they cover together.
     fn unite(&mut self, edits: &mut Edits) {
         let mut groups: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for index in (0..self.faces.len()).filter(|index| !self.dropped[*index]).collect::<Vec<_>>() {
@@ -342,19 +338,96 @@ impl Merger<'_> {
         }
         for group in groups.into_values().filter(|group| group.len() > 1) {
             let faces: Vec<&Face> = group.iter().map(|index| &self.faces[*index]).collect();
-            let united = if group.len() > MOST_UNITED { None } else { union(&faces) };
-            let (lamp, other) = (faces[0].clone(), faces[1].clone());
-            // Where a one-sided lamp shines both ways, the new triangles would need its new material.
-            let united = united.filter(|_| !group.iter().any(|index| self.both_ways[*index]));
-            let Some(united) = united else {
+            // The work of uniting grows with the crossings.
+            let overlaps: usize = group.iter().map(|index| self.overlaps[*index] as usize).sum();
+            let few = group.len() <= MOST_UNITED && overlaps <= MOST_OVERLAPS + 8 * group.len();
+            let united = if few { union(&faces) } else { None };
+            let other = faces[faces.len() - 1].clone();
+            if let Some(kept) = united.as_ref().and_then(|united| self.cover(&group, united)) {
+                let lifted = group.iter().any(|index| self.lifted[*index]);
+                kept.iter().for_each(|index| self.lifted[*index] |= lifted);
+                group.iter().filter(|index| !kept.contains(index)).for_each(|index| self.dropped[*index] = true);
+                self.note(|report| &mut report.same, group.len() - kept.len(), &other, "");
+                continue;
+            }
+            let plain = group.iter().all(|index| self.is_plain(*index) && !self.both_ways[*index]);
+            let Some(united) = united.filter(|_| plain) else {
                 self.note(|report| &mut report.unresolved, group.len(), &other, "");
                 continue;
             };
-            let lifted = group.iter().any(|index| self.lifted[*index]);
-            let by = if lifted { lamp.normal * lamp.lift() } else { DVec3::ZERO };
-            united.iter().for_each(|t| edits.add(lamp.object, t.map(|corner| corner + by), lamp.material));
+            let lamp = self.faces[group[0]].clone();
+            if group.iter().any(|index| self.lifted[*index]) {
+                let (by, material) = (lamp.normal * lamp.lift(), self.variant(lamp.material, true));
+                for [a, b, c] in united {
+                    edits.add(lamp.object, [a + by, b + by, c + by], material);
+                    if !self.one_sided(group[0]) {
+                        edits.add(lamp.object, [a - by, c - by, b - by], material);
+                    }
+                }
+            } else {
+                united.into_iter().for_each(|t| edits.add(lamp.object, t, lamp.material));
+            }
             group.iter().for_each(|index| self.dropped[*index] = true);
             self.note(|report| &mut report.united, group.len(), &other, "");
+        }
+    }
+
+    /// Faces of a group that cover what all of it covers, and do not overlap: the first ones for which there is room. None if these leave something
+    /// out.
+    fn cover(&self, group: &[usize], united: &[[DVec3; 3]]) -> Option<Vec<usize>> {
+        let mut kept: Vec<usize> = Vec::new();
+        let mut compared = 0;
+        for &index in group {
+            compared += kept.len();
+            if compared > MOST_IN_GROUP {
+                return None;
+            }
+            let room = |other: &usize| self.faces[index].relation(&self.faces[*other]) == Relation::Apart;
+            if kept.iter().all(room) {
+                kept.push(index);
+            }
+        }
+        let area = |[a, b, c]: [DVec3; 3]| 0.5 * (b - a).cross(c - a).length();
+        let covered: f64 = kept.iter().map(|index| area(self.faces[*index].corners)).sum();
+        let whole: f64 = united.iter().map(|triangle| area(*triangle)).sum();
+        ((covered - whole).abs() <= 1e-5 * whole).then_some(kept)
+    }
+
+    /// The number of a material like this one, of which one side shines, or both.
+    fn variant(&mut self, material: u32, one_sided: bool) -> u32 {
+        let old = &self.scene.materials[material as usize];
+        if old.one_sided == one_sided {
+            return material;
+        }
+        let next = (self.scene.materials.len() + self.variants.len()) as u32;
+        let number = *self.variant_of.entry((material, one_sided)).or_insert(next);
+        if number == next {
+            self.variants.push(Material { one_sided, ..old.clone() });
+        }
+        number
+    }
+
+    /// What follows from the decisions about single faces.
+    fn edit(&mut self, edits: &mut Edits) {
+        for index in 0..self.faces.len() {
+            let face = self.faces[index].clone();
+            if self.dropped[index] {
+                edits.remove(face.object, face.triangle);
+                continue;
+            }
+            let one_sided = self.one_sided(index);
+            if self.lifted[index] {
+                let by = face.normal * face.lift();
+                edits.shift(face.object, face.triangle, by);
+                if !one_sided {
+                    let material = self.variant(face.material, true);
+                    edits.give(face.object, face.triangle, material);
+                    edits.turn(face.object, face.triangle, material, -by);
+                }
+            } else if self.both_ways[index] {
+                let material = self.variant(face.material, false);
+                edits.give(face.object, face.triangle, material);
+            }
         }
     }
 
@@ -368,7 +441,7 @@ impl Merger<'_> {
         let Some(bounds) = bounds else { return };
         let scene = self.scene;
         let dark: Vec<bool> = scene.materials.iter().map(|m| m.emission == Vec3::ZERO).collect();
-        let mut budget = MOST_OTHERS;
+        let (mut budget, mut pairs) = (MOST_OTHERS, MOST_OTHERS);
         for (object_index, object) in (0..).zip(&scene.objects) {
             let mesh = &scene.meshes[object.mesh as usize];
             if object.material.is_some_and(|material| !dark[material as usize]) {
@@ -403,7 +476,8 @@ impl Merger<'_> {
                 let mut near = Vec::new();
                 visit(bvh, around, |place| {
                     near.push(left[place]);
-                    near.len() < PAIRS
+                    pairs = pairs.saturating_sub(1);
+                    pairs > 0
                 });
                 if near.is_empty() {
                     continue;
@@ -416,19 +490,24 @@ impl Merger<'_> {
                     .map(relation)
                     .filter(|(_, relation)| *relation != Relation::Apart)
                     .collect();
-                if let Some((lamp, relation)) = found.iter().min_by_key(|(_, r)| *r != Relation::Same) {
-                    self.on_a_lamp(*lamp, &face, *relation, edits);
+                match found.iter().find(|(_, relation)| *relation == Relation::Same) {
+                    Some((lamp, relation)) => self.on_a_lamp(*lamp, &face, *relation, edits),
+                    None => found.iter().for_each(|(lamp, relation)| self.on_a_lamp(*lamp, &face, *relation, edits)),
                 }
             }
         }
+        self.report.unsearched |= budget == 0 || pairs == 0;
     }
 
     /// What becomes of a triangle that does not emit and lies on a lamp.
     fn on_a_lamp(&mut self, lamp: usize, face: &Face, relation: Relation, edits: &mut Edits) {
         let passes = self.scene.materials[face.material as usize].transmission != Vec3::ZERO;
-        // One side of a body of glass has to stay where it is.
-        if relation == Relation::Overlapping || passes {
+        if passes {
+            // One side of a body of glass has to stay where it is, and light goes on through it.
             self.note(|report| &mut report.undecided, 1, face, "");
+        } else if relation == Relation::Overlapping {
+            self.lifted[lamp] = true;
+            self.note(|report| &mut report.in_plane, 1, face, "");
         } else if self.one_sided(lamp) && self.faces[lamp].normal.dot(face.normal) < 0.0 {
             // The back of a lamp: behind it.
             edits.shift(face.object, face.triangle, -self.faces[lamp].normal * face.lift());
@@ -468,8 +547,12 @@ impl Report {
                 "that emit lie in the plane of other lamps and cover a part of them: where they overlap, the light is counted twice; cut or move them",
             ),
             (
+                &self.in_plane,
+                "that do not emit lie in the plane of lamps and cover a part of them: the lamps are moved off that plane by a hair, so that they show",
+            ),
+            (
                 &self.undecided,
-                "that do not emit lie in the plane of lamps and cover a part of them: which of the two is seen is left to rounding; move one of them",
+                "that transmit light lie in the plane of lamps: which of the two is met first is left to rounding; move one of them",
             ),
         ];
         let mut sentences: Vec<String> = kinds

@@ -1,0 +1,35 @@
+//! Lamps that lie on each other, on every backend: the radiance that one lamp gives.
+
+use super::*;
+use crate::common::lamps::{expected, files, scene};
+use crate::common::scenes::estimator;
+use crate::common::statistics::*;
+use luminaire::scene::LightSampling;
+
+#[test]
+fn one_lamp_is_counted_once() {
+    let cases = [
+        ("double-sided", LightSampling::Mis),
+        ("shifted halves", LightSampling::Direct),
+        ("one-sided, another lamp at its back", LightSampling::Mis),
+        ("in the plane of a ceiling", LightSampling::Mis),
+        ("in the plane of a ceiling", LightSampling::None),
+    ];
+    for (name, light_sampling) in cases {
+        let (_, mesh, more) = files().into_iter().find(|(file, ..)| *file == name).expect("one of the files");
+        let mut scene = scene(&mesh, more);
+        estimator(&mut scene).light_sampling = light_sampling;
+        on_every_backend(|backend| {
+            let found = total(&render(&mut backend.tracer(&scene), 4, 4, 4096, 16));
+            assert!(
+                (found.mean / expected() - 1.0).abs() < 0.04
+                    && (found.mean - expected()).abs() < 5.0 * found.error + 1e-3,
+                "{name}, {light_sampling:?}, {}: {} +- {} instead of {}",
+                backend.name(),
+                found.mean,
+                found.error,
+                expected()
+            );
+        });
+    }
+}
