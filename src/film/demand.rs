@@ -22,7 +22,7 @@ const AOV_CHANNELS: u64 = 32;
 const SUMS: u64 = FILM;
 
 /// What does not grow with the film: a batch of sums on the device and here, the rows in which errors are estimated, the blocks of a file.
-const FIXED: u64 = 0;
+const FIXED: u64 = 40 << 20;
 
 /// A film, and which files are written of it.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
