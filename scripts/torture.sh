@@ -2,7 +2,7 @@
 # Does to long renders what machines do to them, and checks that nothing is lost: kills, full disks, lost devices, tasks of a cluster that die.
 #
 #   scripts/torture.sh            all of it, some minutes; as root, because a full disk is a mounted one and Slurm is started
-#   scripts/torture.sh --short    some kills, a lost device and parts: no root, under a minute
+#   scripts/torture.sh --short    some kills, a lost device, parts, flipped bits, outputs that are inputs, little memory: no root, a minute
 #
 # Prints a table. Exit code 1 if anything was lost. What cannot be tried here is said to be skipped. BACKEND and BIN say what to try.
 set -uo pipefail
@@ -106,6 +106,80 @@ for bad in "p1.exr p3.exr" "p1.exr p2.exr p2.exr p3.exr" "p1.exr whole.exr" "p2.
     # shellcheck disable=SC2086
     check "merge $bad" "refused" bash -c "! $bin merge $bad -o bad.exr && [ ! -e bad.exr ]"
 done
+
+# --- Flipped bits
+cp p1.exr sound.exr
+size=$(stat -c %s sound.exr)
+steps=64
+[ "${1:-}" = --short ] && steps=12
+flipped=0
+for step in $(seq $steps); do
+    at=$((size * step / (steps + 1)))
+    cp sound.exr flipped.exr
+    byte=$(od -An -tu1 -j $at -N 1 flipped.exr | tr -d ' ')
+    # shellcheck disable=SC2059
+    printf "\\x$(printf %x $((byte ^ 1 << step % 8)))" | dd of=flipped.exr bs=1 seek=$at conv=notrunc 2>/dev/null
+    "$bin" merge flipped.exr -o bad.exr >/dev/null 2>&1 || flipped=$((flipped + 1))
+done
+check "a part with a flipped bit" "$flipped of $steps refused" bash -c "[ $flipped = $steps ] && [ ! -e bad.exr ] && $bin merge sound.exr -o good.exr"
+
+# --- Two jobs, one checkpoint
+rm -f c.exr
+"${render[@]}" --spp 4000000000 -o j1.exr --checkpoint c.exr --checkpoint-every 0.05 &
+job=$!
+while [ ! -e c.exr ] && kill -0 $job 2>/dev/null; do sleep 0.02; done
+"${render[@]}" --spp $spp -o j2.exr --checkpoint ./c.exr --resume 2>second.log
+code=$?
+kill -KILL $job 2>/dev/null
+wait $job 2>/dev/null
+check "two jobs with one checkpoint" "the second is refused, exit code $code" bash -c "[ $code = 1 ] && grep -q 'process $job' second.log && [ ! -e j2.exr ]"
+"${render[@]}" --spp 1 -o j2.exr --checkpoint c.exr --resume
+check "the lock of a killed job" "is in nobody's way" bash -c "[ $? = 0 ] && [ ! -e c.exr.lock ]"
+
+# --- An output that is an input
+mkdir -p model/textures
+printf 'mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3\n' >model/m.obj
+printf 'newmtl a\nKe 1 1 1\nmap_Ke textures/m.png\nmap_Kd m.png\n' >model/m.mtl
+"${render[@]}" --spp 1 -o model/textures/m.png
+cp model/textures/m.png model/m.png
+ln -s textures/m.png model/soft.png
+ln model/textures/m.png model/hard.png
+ln -s model here
+cp -r model before
+model=$PWD/model
+spared=0 ways=0
+spare() {
+    ways=$((ways + 1))
+    (cd model && "$bin" "$@" >/dev/null 2>&1)
+    [ $? = 2 ] && spared=$((spared + 1))
+}
+small=(render m.obj --width 8 --spp 1 --backend cpu --quiet)
+for name in textures/m.png ./textures/m.png textures/../textures/m.png "$model/textures/m.png" soft.png hard.png ../here/textures/m.png m.png; do
+    spare "${small[@]}" -o "$name"
+done
+spare "${small[@]}"
+spare "${small[@]}" -o ok.png --error-map soft.png
+spare compare m.png textures/m.png --heatmap hard.png
+spare merge ../p1.exr -o ../model/../p1.exr
+check "an output that is an input, $ways ways" "$spared refused, nothing has changed" \
+    bash -c "[ $spared = $ways ] && diff -r --no-dereference model before && cmp p1.exr sound.exr"
+
+# --- Little address space
+limits="200 300 400 600 800 1000 1400 2000"
+[ "${1:-}" = --short ] && limits="200 400 1000"
+dead=0 tries=0
+for limit in $limits; do
+    for what in "render $scene --width 16 --spp 1 --backend auto -o v.png" "render $scene --width 16 --spp 1 --backend cpu -o v.png" \
+        "render $scene --width 16 --spp 1 --backend compute-bvh -o v.png" devices "inspect $scene"; do
+        tries=$((tries + 1))
+        # shellcheck disable=SC2086
+        (ulimit -v $((limit * 1024)) && exec "$bin" $what >/dev/null 2>&1)
+        code=$?
+        # What does not name a device has to work.
+        case $what in *auto* | inspect*) [ $code = 0 ] ;; *) [ $code -le 2 ] ;; esac || dead=$((dead + 1))
+    done
+done
+check "ulimit -v of 200 MB to 2 GB" "$tries runs: the reference or an error, none crashed" [ $dead = 0 ]
 
 if [ "${1:-}" != --short ]; then
     # --- Disks

@@ -58,6 +58,14 @@ impl Film {
         Ok(film)
     }
 
+    /// Checks that a film of this size, and a picture of it, fit into the memory that is free now.
+    ///
+    /// # Errors
+    /// As for [`Demand::check`].
+    pub fn check_size(width: u32, height: u32) -> Result<()> {
+        Demand { width, height, ..Demand::default() }.check()
+    }
+
     /// Number of pixels.
     pub fn pixels(&self) -> usize {
         self.sums.len()

@@ -208,7 +208,8 @@ fn film_memory(scene: &Scene) -> String {
     };
     let with = Demand { sums: true, ..plain };
     format!(
-        "{} for a picture, {} with layers (--aov), {} with --checkpoint or --samples, whose file takes up to {}",
+        "{} for a picture, {} with layers (--aov), {} with --checkpoint or --samples, whose file takes up to {}; besides the scene, and about 120 MiB \
+         for a Vulkan driver",
         size(plain.bytes()),
         size(Demand { aovs: true, exr: true, ..plain }.bytes()),
         size(with.bytes()),

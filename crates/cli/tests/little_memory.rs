@@ -1,0 +1,66 @@
+//! Under `ulimit -v`, which Linux keeps: the reference or an error, but no crash, whatever is left.
+#![cfg(target_os = "linux")]
+
+mod common;
+
+use common::{Folder, stderr};
+use std::process::{Command, Output};
+
+/// Runs `luminaire` with so many MiB of address space.
+fn within(folder: &Folder, mib: u32, words: &str) -> Output {
+    let program = env!("CARGO_BIN_EXE_luminaire");
+    let line = format!("ulimit -v {} && exec {program} {words}", mib * 1024);
+    let output = Command::new("sh").current_dir(folder.path()).args(["-c", &line]).output().unwrap();
+    assert!(output.status.code().is_some(), "{mib} MiB, {words}: {:?}\n{}", output.status, stderr(&output));
+    output
+}
+
+#[test]
+fn drivers_that_would_crash_are_not_loaded() {
+    let folder = Folder::new();
+    for mib in [250, 400, 700, 1000] {
+        let small = "good.obj --width 8 --spp 2 -o a.png";
+        let auto = within(&folder, mib, &format!("render {small}"));
+        let said = stderr(&auto);
+        assert!(
+            auto.status.success() && said.contains("notice: cpu on ") && said.contains("ulimit -v"),
+            "{mib}: {said}"
+        );
+        for backend in ["compute-bvh", "ray-query"] {
+            let named = within(&folder, mib, &format!("render {small} --backend {backend}"));
+            assert!(named.status.code() == Some(1) && stderr(&named).contains("error: this process may take"), "{mib}");
+        }
+        assert!(within(&folder, mib, &format!("render {small} --backend cpu")).status.success(), "{mib}");
+        assert_eq!(within(&folder, mib, "devices").status.code(), Some(1), "{mib}");
+        assert!(within(&folder, mib, "inspect good.obj").status.success(), "{mib}");
+    }
+}
+
+#[test]
+fn a_film_that_does_not_fit_is_refused_with_what_it_wants() {
+    let folder = Folder::new();
+    let words = "render good.obj --backend cpu --width 4096 --height 4096 --spp 2 -o a.exr";
+    for (more, needed) in [("", "2.4 GiB"), ("--checkpoint c.exr", "4.0 GiB")] {
+        let output = within(&folder, 600, &format!("{words} {more}"));
+        let said = stderr(&output);
+        assert!(output.status.code() == Some(1) && said.contains(needed) && said.contains("--width"), "{said}");
+        assert!(!folder.names().iter().any(|name| name.ends_with(".exr") || name.ends_with(".lock")));
+    }
+}
+
+#[test]
+fn memory_is_told_before_a_render_begins() {
+    let folder = Folder::new();
+    let output = folder.luminaire(&["inspect", "good.obj", "--width", "3840", "--height", "2160"]).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    // 118, 217 and 253 bytes a pixel and 40 MiB, 124 bytes a pixel on disk.
+    for part in [
+        "3840 x 2160 pixels",
+        "973.4 MiB for a picture",
+        "1.72 GiB with layers",
+        "1.99 GiB with --checkpoint",
+        "up to 980.9 MiB",
+    ] {
+        assert!(said.contains(part), "{part} is not in\n{said}");
+    }
+}
