@@ -146,12 +146,14 @@ impl Case {
     }
 
     /// By how much of itself what is computed from the lobe at `wi` may be off: `cos^m` shows the rounding of the sine `m` times, and what a
-    /// coat lets through at grazing angles is a small difference.
+    /// coat lets through at grazing angles, or near the critical one, is a small difference.
     fn rounding(&self, wi: DVec3) -> f64 {
         let h = (self.wo + wi).normalize();
         let coat = if self.surfel.is_coated() {
             let through = |w: DVec3| (DVec3::ONE - self.surfel.impulses(w).reflection).min_element().max(1e-6);
-            4e-7 / through(self.wo) + 4e-7 / through(wi)
+            let eta2 = self.surfel.eta.map_or(1.0, |eta| eta * eta).min(1.0);
+            let critical = |w: DVec3| if eta2 < 1.0 { 1e-7 / (w.z - (1.0 - eta2).sqrt()).abs().max(1e-9) } else { 0.0 };
+            [self.wo, wi].iter().map(|w| 4e-7 / through(*w) + critical(*w)).sum()
         } else {
             0.0
         };
