@@ -47,7 +47,8 @@ void sensor_ray(uvec2 pixel, uint pixel_index, uint sample_index, out vec3 origi
         // All rays of a film point meet in one point of the plane of focus.
         vec2 point = lens_point(random.zw);
         offset = point.x * normalize(frame.right.xyz) + point.y * normalize(frame.up.xyz);
-        origin += frame.lens_at_start * offset;
+        if (frame.start > 0.0) origin += frame.lens_at_start * offset;
+        else origin += offset;
         direction = frame.focus_distance * direction - offset;
     }
     direction = normalize(direction);

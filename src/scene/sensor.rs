@@ -48,41 +48,52 @@ pub struct Lens {
 
 /// Relative error of one rounding in single precision.
 const ROUNDING: f64 = f32::EPSILON as f64 * 0.5;
-/// A pixel that is larger than so many roundings of a ray's points is drawn well from the eye point itself.
-const ROUNDINGS_IN_A_PIXEL: f64 = 64.0;
+/// A pixel that is larger than so many roundings of a ray's points is drawn well.
+const ROUNDINGS_IN_A_PIXEL: f64 = 16.0;
 
 impl Sensor {
     /// How far in front of the eye point, along the line of sight, a tracer of single precision lets camera rays start: 0, the eye point itself,
     /// unless pixels are so small, and so far away, that the rounding of points and directions would show. Then it is a plane in front of the
     /// scene's bounds; there is none if the bounds reach up to the eye point.
     pub fn start(&self, film: &FilmSettings, bounds: (DVec3, DVec3)) -> f64 {
-        if self.is_coarse(film, bounds) { self.in_front_of(bounds) } else { 0.0 }
+        let distance = self.in_front_of(bounds);
+        let largest = self.position.as_dvec3().abs().max_element().max(distance);
+        if self.pixel(film, distance) < ROUNDINGS_IN_A_PIXEL * ROUNDING * largest { distance } else { 0.0 }
     }
 
-    /// Whether single precision is too coarse for the picture, and [`Sensor::start`] is no help.
+    /// Whether single precision is too coarse for the picture, from wherever rays start: by its rounding over the depth of the scene, and by
+    /// the coordinates there.
     pub fn is_beyond_single_precision(&self, film: &FilmSettings, bounds: (DVec3, DVec3)) -> bool {
-        self.is_coarse(film, bounds) && self.in_front_of(bounds) == 0.0
+        let start = self.start(film, bounds);
+        let depth = (bounds.1 - bounds.0).length();
+        let coordinates = (self.position.as_dvec3() + start * self.forward()).abs().max_element();
+        let largest = match self.projection {
+            Projection::Perspective { .. } => coordinates.max(depth),
+            // All rays round alike: a shift, not a blur.
+            Projection::Orthographic { .. } => coordinates,
+        };
+        self.pixel(film, start + depth) < ROUNDINGS_IN_A_PIXEL * ROUNDING * largest
     }
 
-    /// Whether a pixel is small beside the rounding of points as far away as the scene.
-    fn is_coarse(&self, film: &FilmSettings, bounds: (DVec3, DVec3)) -> bool {
-        let position = self.position.as_dvec3();
-        let middle = 0.5 * (bounds.0 + bounds.1);
-        let distance = position.distance(middle);
-        let half = match self.projection {
-            Projection::Perspective { fov } => distance * (f64::from(fov).to_radians() / 2.0).tan(),
-            Projection::Orthographic { height } => 0.5 * f64::from(height),
+    /// The height of a pixel at a distance.
+    fn pixel(&self, film: &FilmSettings, distance: f64) -> f64 {
+        let height = match self.projection {
+            Projection::Perspective { fov } => 2.0 * distance * (f64::from(fov).to_radians() / 2.0).tan(),
+            Projection::Orthographic { height } => f64::from(height),
         };
-        let pixel = 2.0 * half / f64::from(film.height);
-        pixel < ROUNDINGS_IN_A_PIXEL * ROUNDING * distance.max(position.abs().max_element())
+        height / f64::from(film.height)
+    }
+
+    fn forward(&self) -> DVec3 {
+        (self.target.as_dvec3() - self.position.as_dvec3()).normalize()
     }
 
     /// The distance of a plane across the line of sight that has all of the bounds behind it, by a quarter of their size; 0 if the eye point
     /// is not in front of it.
     fn in_front_of(&self, (low, high): (DVec3, DVec3)) -> f64 {
-        let position = self.position.as_dvec3();
-        let forward = (self.target.as_dvec3() - position).normalize();
+        let forward = self.forward();
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
-        (forward.dot(middle - position) - forward.abs().dot(half) - 0.5 * half.length()).max(0.0)
+        let nearest = forward.dot(middle - self.position.as_dvec3()) - forward.abs().dot(half);
+        (nearest - 0.5 * half.length()).max(0.0)
     }
 }

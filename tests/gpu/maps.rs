@@ -1,6 +1,7 @@
 //! Textures and the environment: what is looked up, and which directions are chosen.
 
 use super::functions::{call, floats, vector};
+use super::pictures::{differing, pixels};
 use super::*;
 use crate::common::directions::*;
 use crate::common::scenes::*;
@@ -76,6 +77,27 @@ fn lookups_match_and_directions_have_their_density() {
         textures(&probe, &scene);
         environment(&probe, &reference);
         sampled_directions(&probe, &reference);
+    });
+}
+
+/// Coordinates of a hundred thousand turns, as of pictures that lie by the metre on a map of a country: the picture is there as the reference
+/// has it, within a thousandth of a texel, since whole turns are left out.
+#[test]
+fn coordinates_of_many_turns_keep_their_digits() {
+    let mut scene = empty(32, 32);
+    scene.sensor = pinhole(Vec3::new(0.5, 0.5, 1.0), Vec3::new(0.5, 0.5, 0.0), Vec3::Y, 40.0);
+    let mut sheet = quad(Vec3::ZERO, Vec3::X, Vec3::Y);
+    sheet.uvs = sheet.positions.iter().map(|p| p.truncate() + Vec2::new(1e5, -3e5)).collect();
+    let mut glow = lamp(Vec3::ONE);
+    glow.maps.emission = Some(0);
+    add(&mut scene, sheet, glow, Affine3A::IDENTITY);
+    let image = texture(64, 64, |x, y| random4(x, y, 0, 2).map(|number| uniform(number) as f32));
+    scene.textures.push(image.into());
+    let expected = pixels(&mut Reference::new(&scene), &scene, 4);
+    on_every_backend(|backend| {
+        let found = pixels(&mut backend.tracer(&scene), &scene, 4);
+        let count = differing(&found, &expected, 2e-3);
+        assert!(count <= found.len() / 100, "{}: {count} pixels differ", backend.name());
     });
 }
 

@@ -145,10 +145,19 @@ impl Case {
         (0..N).map(|i| [[x, y, z, self.material], random4(i, self.material, z, 41)]).collect()
     }
 
-    /// By how much of itself what is computed from the lobe at `wi` may be off: `cos^m` shows the rounding of the sine `m` times.
+    /// By how much of itself what is computed from the lobe at `wi` may be off: `cos^m` shows the rounding of the sine `m` times, and what a
+    /// coat lets through at grazing angles, or near the critical one, is a small difference.
     fn rounding(&self, wi: DVec3) -> f64 {
         let h = (self.wo + wi).normalize();
-        5e-6 + 1e-6 * self.surfel.exponent * h.x.hypot(h.y) + 1e-6 / self.wo.dot(h)
+        let coat = if self.surfel.is_coated() {
+            let through = |w: DVec3| (DVec3::ONE - self.surfel.impulses(w).reflection).min_element().max(1e-6);
+            let eta2 = self.surfel.eta.map_or(1.0, |eta| eta * eta).min(1.0);
+            let critical = |w: DVec3| if eta2 < 1.0 { 1e-7 / (w.z - (1.0 - eta2).sqrt()).abs().max(1e-9) } else { 0.0 };
+            [self.wo, wi].iter().map(|w| 4e-7 / through(*w) + critical(*w)).sum()
+        } else {
+            0.0
+        };
+        5e-6 + 1e-6 * self.surfel.exponent * h.x.hypot(h.y) + 1e-6 / self.wo.dot(h) + coat
     }
 
     /// Whether a choice by `lobe` is so close that rounding may decide it otherwise.

@@ -2,7 +2,7 @@
 
 use crate::gpu::bvh::MeshBvh;
 use crate::gpu::layout::{self, HAS_PLANE, VertexColours, VertexNormals};
-use crate::scene::{Mesh, Scene, Triangle, widen};
+use crate::scene::{Mesh, Scene, Texture, Triangle, widen};
 use glam::{DAffine3, Vec2, Vec3};
 
 /// Each triangle of each mesh, with its index in the mesh, in the order of `meshes`.
@@ -42,11 +42,23 @@ pub(in crate::gpu) fn vertex_colours(scene: &Scene, meshes: &[MeshBvh]) -> Vec<V
     packed
 }
 
-/// Their texture coordinates; zero where a mesh has none.
+/// Texture coordinates that are larger lose digits of the place in the image, which are had back by leaving whole turns out.
+const FAR: f32 = 64.0;
+
+/// Their texture coordinates; zero where a mesh has none. Where every image repeats, and is scaled by whole numbers if at all, large ones are
+/// those of the first turns.
 pub(in crate::gpu) fn texture_coordinates(scene: &Scene, meshes: &[MeshBvh]) -> Vec<layout::TriangleUvs> {
+    let whole = |texture: &Texture| {
+        !texture.clamp && texture.transform.matrix2.to_cols_array().iter().all(|factor| factor.fract() == 0.0)
+    };
+    let turns_say_nothing = scene.textures.iter().all(|texture| whole(texture));
     let mut packed = Vec::with_capacity(count(meshes));
     packed.extend(in_order(scene, meshes).map(|(mesh, _, triangle)| {
-        let [a, b, c] = triangle.vertices.map(|v| mesh.uvs.get(v as usize).copied().unwrap_or(Vec2::ZERO).to_array());
+        let corners = triangle.vertices.map(|v| mesh.uvs.get(v as usize).copied().unwrap_or(Vec2::ZERO));
+        let least = corners[0].min(corners[1]).min(corners[2]).floor();
+        let far = turns_say_nothing && least.is_finite();
+        let turns = if far { Vec2::select(least.abs().cmpgt(Vec2::splat(FAR)), least, Vec2::ZERO) } else { Vec2::ZERO };
+        let [a, b, c] = corners.map(|corner| (corner - turns).to_array());
         layout::TriangleUvs { a, b, c, padding: [0; 2] }
     }));
     packed

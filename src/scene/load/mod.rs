@@ -57,9 +57,8 @@ pub fn load(path: &Path) -> Result<Scene> {
     }
     if scene.sensor.is_beyond_single_precision(&scene.film, (low, high)) {
         scene.warnings.push(format!(
-            "{}: seen from so far away, or through so long a lens, a pixel is smaller than what single precision tells apart, and the \
-             scene reaches up to the camera, so that a GPU's picture is blurred or shifted: take --backend cpu, or cut the scene off \
-             before the camera",
+            "{}: a pixel is smaller than what single precision tells apart at these distances and coordinates, so that a GPU's picture is \
+             blurred or shifted: take --backend cpu, or bring the scene nearer to the camera and to the origin",
             path.display()
         ));
     }
