@@ -16,5 +16,6 @@ pub use openexr::{Attribute, Exr, Values};
 pub(crate) use openexr::{read_channels, read_texts};
 pub use pixels::Picture;
 pub use read::read;
+pub(crate) use srgb::linear;
 pub use srgb::{srgb, to_srgb8};
 pub use write::{save_linear, save_png};

@@ -6,7 +6,7 @@ pub fn srgb(linear: f32) -> f32 {
 }
 
 /// The linear value of a non-linear sRGB one in [0, 1] (IEC 61966-2-1).
-pub(super) fn linear(srgb: f32) -> f32 {
+pub(crate) fn linear(srgb: f32) -> f32 {
     if srgb <= 0.040_45 { srgb / 12.92 } else { ((srgb + 0.055) / 1.055).powf(2.4) }
 }
 

@@ -154,7 +154,7 @@ fn an_interrupted_render_goes_on_to_the_same_bits() {
             continue;
         }
         assert_eq!(output.status.code(), Some(130), "{}", said(&output));
-        assert!(said(&output).contains("--resume"), "{}", said(&output));
+        assert!(said(&output).contains("the same command with --resume goes on"), "{}", said(&output));
         done(folder.render(&format!("--spp {spp} -o whole.exr --quiet")));
         assert_ne!(folder.bytes("whole.exr"), folder.bytes("part.exr"), "the render was not interrupted");
         assert!(done(folder.render(&format!("{options} --resume"))).contains("going on from"));
@@ -328,7 +328,7 @@ fn a_device_that_fails_costs_nothing() {
     let options = "--spp 64 -o lost.exr --checkpoint c.exr --resume";
     let mut losing = folder.render(options);
     losing.env("LUMINAIRE_LOSE_DEVICE_AFTER", "9");
-    fails(losing, 3, &["error: ", "lost", "--resume goes on"]);
+    fails(losing, 3, &["error: ", "lost", "the same command goes on from the checkpoint"]);
     assert_ne!(folder.bytes("whole.exr"), folder.bytes("lost.exr"), "the render did not fail");
     done(folder.render(options));
     assert_eq!(folder.bytes("whole.exr"), folder.bytes("lost.exr"));

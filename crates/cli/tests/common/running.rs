@@ -10,8 +10,8 @@ use std::time::{Duration, Instant};
 const IDLE: Duration = Duration::from_secs(60);
 /// Nothing that a test waits for takes so long, however busy the machine is.
 const END: Duration = Duration::from_secs(600);
-/// Between two looks.
-const PAUSE: Duration = Duration::from_millis(10);
+/// At most, between two looks; at first less, so that a short program is seen at its work.
+const PAUSE: Duration = Duration::from_millis(30);
 
 /// A program that runs, and ends with this. What it says goes to files, so that it never waits for a reader.
 pub struct Running {
@@ -70,7 +70,7 @@ impl Running {
             } else if start.elapsed() > END {
                 return Err("the program took ten minutes");
             }
-            std::thread::sleep(PAUSE);
+            std::thread::sleep((start.elapsed() / 16).clamp(Duration::from_millis(1), PAUSE));
         }
     }
 

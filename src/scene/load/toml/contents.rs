@@ -1,10 +1,12 @@
 //! The tables `[[luminaire]]`, `[[material]]` and `[[object]]` of a scene file.
 
 use super::file::File;
+use super::radians;
 use super::tables::{LuminaireEntry, LuminaireKind, MaterialTable, ObjectTable, Scale};
-use super::values::Triple;
+use super::values::{Matrix, Triple};
 use crate::scene::load::loader::Loader;
 use crate::scene::load::material_draft::{Draft, DraftMaps, MapDraft};
+use crate::scene::load::near_name::instead_of;
 use crate::scene::load::obj;
 use crate::scene::load::text_file::{line_and_column, shortened};
 use crate::scene::load::texture::MapFile;
@@ -77,7 +79,8 @@ impl File<'_> {
         }
         let path = self.beside(name.get_ref());
         // What is wrong with the image itself is a warning, as it is in an MTL file.
-        std::fs::metadata(&path).map_err(|error| self.error(name.span(), Error::read(&path, error).to_string()))?;
+        std::fs::metadata(&path)
+            .map_err(|error| self.error(name.span(), Error::read(&path, error).to_string() + &instead_of(&path)))?;
         let at = format!("{}:{}", self.path.display(), line_and_column(self.text, name.span().start).0);
         Ok(MapDraft::File(MapFile::plain(vec![name.get_ref().clone()], self.folder(), at)))
     }
@@ -85,6 +88,10 @@ impl File<'_> {
     pub(super) fn object(&self, table: &Spanned<ObjectTable>, loader: &mut Loader) -> Result<Object> {
         let object = table.get_ref();
         let object_to_world = self.transform(table)?;
+        if let Some(warning) = object.rotate.and_then(|rotate| radians::rotation(rotate.0)) {
+            let (line, _) = line_and_column(self.text, table.span().start);
+            loader.warnings.push(format!("{}:{line}: {warning}", self.path.display()));
+        }
         let mesh_path = self.beside(object.mesh.get_ref());
         if !mesh_path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("obj")) {
             let message = format!("`{}`: a mesh has to be an .obj file", object.mesh.get_ref());
@@ -92,7 +99,7 @@ impl File<'_> {
         }
         let mesh = loader.mesh(&mesh_path, object.smooth.map(|smooth| smooth.0)).map_err(|error| match error {
             // Where the file is named helps more than where it is not.
-            Error::Read { .. } => self.error(object.mesh.span(), error.to_string()),
+            Error::Read { .. } => self.error(object.mesh.span(), error.to_string() + &instead_of(&mesh_path)),
             other => other,
         })?;
         let material = match &object.material {
@@ -117,7 +124,7 @@ impl File<'_> {
         }
         let zero = Triple(Vec3::ZERO);
         let to_world = match matrix {
-            Some(rows) => {
+            Some(Matrix(rows)) => {
                 let column = |c: usize| DVec3::new(rows[0][c].0.into(), rows[1][c].0.into(), rows[2][c].0.into());
                 DAffine3 { matrix3: DMat3::from_cols(column(0), column(1), column(2)), translation: column(3) }
             }

@@ -1,7 +1,10 @@
 //! Scene files in TOML; `scenes/README.md` describes the format.
 
+mod advice;
 mod contents;
 mod file;
+mod foreign_words;
+mod radians;
 mod settings;
 mod tables;
 mod values;
@@ -11,6 +14,7 @@ use super::loader::Loader;
 use super::text_file::read_bytes;
 use crate::scene::{Projection, RenderSettings, Scene, Sensor};
 use crate::{Error, Result};
+use advice::{in_plain_words, wrong_brackets};
 use file::File;
 use glam::Vec3;
 use std::path::Path;
@@ -24,8 +28,13 @@ pub(super) fn load(path: &Path) -> Result<Scene> {
         Error::Parse { path: path.to_owned(), line, column: 0, message: "a scene file has to be UTF-8 text".into() }
     })?;
     let file = File { path, text };
-    let scene: SceneFile = ::toml::from_str(text)
-        .map_err(|error| file.error(error.span().unwrap_or(0..0), in_plain_words(error.message().trim())))?;
+    if let Some((span, message)) = wrong_brackets(text) {
+        return Err(file.error(span, message));
+    }
+    let scene: SceneFile = ::toml::from_str(text).map_err(|error| {
+        let span = error.span().unwrap_or(0..0);
+        file.error(span.clone(), in_plain_words(error.message().trim(), text, span))
+    })?;
     file.build(scene)
 }
 
@@ -39,6 +48,11 @@ impl File<'_> {
         }
         let sensor = file.sensor.map(|table| self.sensor(&table)).transpose()?;
         let mut loader = Loader::new(self.materials(&file.material)?);
+        if let Some(Projection::Perspective { fov }) = sensor.as_ref().map(|sensor| sensor.projection)
+            && let Some(warning) = radians::field_of_view(fov)
+        {
+            loader.warnings.push(self.warning(&warning));
+        }
         let environment = match &file.environment {
             None => None,
             Some(table) => self.environment(table, &mut loader.warnings)?,
@@ -86,18 +100,4 @@ impl File<'_> {
         scene.warnings.extend(scene.dark_because());
         Ok(scene)
     }
-}
-
-/// The parser's words for types, as TOML users know them.
-fn in_plain_words(message: &str) -> String {
-    let words = [
-        ("invalid type: map, expected a sequence", "one table, expected a list of them: write [[ ]] around its name"),
-        ("invalid type: map, expected", "a table (or a list of tables), expected"),
-        ("expected f64", "expected a number"),
-        ("expected f32", "expected a number"),
-        ("expected i64", "expected a whole number"),
-        ("expected u32", "expected a whole number from 0 to 4294967295"),
-        ("expected an array of length 3", "expected three numbers"),
-    ];
-    words.iter().fold(message.to_owned(), |text, (from, to)| text.replace(from, to))
 }

@@ -1,8 +1,8 @@
 //! The tables of a scene file, as `scenes/README.md` describes them.
 
 use super::values::{
-    Angle, Blades, Bounces, Colour, Eta, Exponent, Exposure, FilterRadius, Finite, Fov, NotNegative, Pixels, Positive,
-    Probability, Samples, Triple, Unit,
+    Angle, Blades, Bounces, Colour, Eta, Exponent, Exposure, FilterRadius, Finite, Fov, Matrix, NotNegative, Pixels,
+    Positive, Probability, Samples, Triple, Unit,
 };
 use crate::scene::{AreaSampling, Directions, Extinction, Filter, LightSampling, Sampler};
 use ::toml::Spanned;
@@ -108,7 +108,7 @@ pub(super) struct ObjectTable {
     pub translate: Option<Triple>,
     pub rotate: Option<Triple>,
     pub scale: Option<Scale>,
-    pub matrix: Option<[[Finite; 4]; 3]>,
+    pub matrix: Option<Matrix>,
 }
 
 #[derive(Deserialize)]
