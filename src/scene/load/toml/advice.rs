@@ -94,8 +94,6 @@ pub(super) fn in_plain_words(message: &str, text: &str, span: Range<usize>) -> S
         ("expected f32", "expected a number"),
         ("expected i64", "expected a whole number"),
         ("expected u32", "expected a whole number from 0 to 4294967295"),
-        ("expected an array of length 3", "expected three rows of four numbers"),
-        ("expected an array of length 4", "expected rows of four numbers: [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]]"),
     ];
     let plain = replaced.iter().fold(message.to_owned(), |text, (from, to)| text.replace(from, to));
     match advice(message, text, span) {
@@ -161,7 +159,7 @@ fn advice(message: &str, text: &str, span: Range<usize>) -> Option<String> {
     }
     let value = text.get(span.clone()).unwrap_or_default().trim_matches(['"', '\'']);
     if message.starts_with("invalid type: string") {
-        if message.contains("expected a list of three") || message.contains("three numbers") {
+        if message.contains("three numbers") {
             let rgb = hex_colour(value).map(|[r, g, b]| format!("{value} is [{r:.4}, {g:.4}, {b:.4}] in linear RGB"));
             return rgb.or_else(|| Some("write them in brackets: [0, 0.5, 1]".to_owned()));
         }

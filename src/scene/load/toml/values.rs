@@ -28,7 +28,11 @@ impl<'de, const N: usize> Deserialize<'de> for Numbers<N> {
         impl<'de, const N: usize> Visitor<'de> for Elements<N> {
             type Value = Numbers<N>;
             fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-                f.write_str(if N == 3 { "three numbers [x, y, z]" } else { "a row of four numbers" })
+                f.write_str(if N == 3 {
+                    "three numbers [x, y, z]"
+                } else {
+                    "rows of four numbers: [[1, 0, 0, 5], [0, 1, 0, 0], [0, 0, 1, 0]]"
+                })
             }
             fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> std::result::Result<Numbers<N>, A::Error> {
                 let mut numbers = Vec::new();
