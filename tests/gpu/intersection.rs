@@ -14,9 +14,12 @@ use rand::{RngExt, SeedableRng};
 /// What a backend or the oracle found: (t, object, triangle), or nothing.
 type Found = Option<(f64, u32, u32)>;
 
-fn probe_hits(backend: &Intersector, scene: &Scene, function: Function, rays: &[Ray]) -> Vec<Found> {
-    let probe = Probe::new(&backend.device, scene, backend.ray_query).expect("a probe");
-    rays::probe_hits(&probe, function, rays).expect("the probe runs").into_iter().map(found).collect()
+fn probe(backend: &Intersector, scene: &Scene) -> Probe {
+    Probe::new(&backend.device, scene, backend.ray_query).expect("a probe")
+}
+
+fn hits(probe: &Probe, function: Function, rays: &[Ray]) -> Vec<Found> {
+    rays::probe_hits(probe, function, rays).expect("the probe runs").into_iter().map(found).collect()
 }
 
 fn oracle_hits(oracle: &Reference, rays: &[Ray]) -> Vec<Found> {
@@ -120,8 +123,8 @@ fn instanced(rng: &mut StdRng) -> Scene {
     scene
 }
 
-/// Rays that graze no edge on purpose: at most 1 in 10 000 may differ. t agrees to 1e-6 of itself and the size of the
-/// scene in 999 of 1000; the rest are slants.
+/// Rays that graze no edge on purpose: at most 1 in 10 000 may differ, so that what is wrong for 1 in 1500 is found with a probability of 99 % in each
+/// scene. t agrees to 1e-6 of itself and the size of the scene in 999 of 1000; the rest are slants.
 #[test]
 fn generic_rays_hit_what_brute_force_hits() {
     let mut rng = StdRng::seed_from_u64(11);
@@ -133,17 +136,17 @@ fn generic_rays_hit_what_brute_force_hits() {
     for (name, scene, spread) in
         [("one mesh", single, 1.5), ("instances", instanced(&mut rng), 4.0), ("one triangle", one_triangle, 1.5)]
     {
-        let rays = random_rays(40_000, &mut rng, spread);
+        let rays = random_rays(10_000, &mut rng, spread);
         let expected = oracle_hits(&Reference::brute_force(&scene), &rays);
         on_every_backend(|backend| {
-            let d = disagreement(&probe_hits(backend, &scene, Function::ClosestHit, &rays), &expected);
+            let probe = probe(backend, &scene);
+            let d = disagreement(&hits(&probe, Function::ClosestHit, &rays), &expected);
             println!("{name}, {}, of {} rays: {d:?}", backend.name(), rays.len());
             assert!(d.hit_or_miss + d.other_triangle <= rays.len() / 10_000, "{name}, {}: {d:?}", backend.name());
             assert!(d.distance[0] < 1e-6 && d.distance[1] < 1e-4, "{name}, {}: {d:?}", backend.name());
 
-            let shadows = Probe::new(&backend.device, &scene, backend.ray_query)
-                .and_then(|p| p.call(Function::Occluded, &rays.iter().map(Ray::call).collect::<Vec<_>>()))
-                .expect("the probe runs");
+            let calls: Vec<_> = rays.iter().map(Ray::call).collect();
+            let shadows = probe.call(Function::Occluded, &calls).expect("the probe runs");
             let differ = shadows.iter().zip(&expected).filter(|(s, e)| (s[0][0] != 0) != e.is_some()).count();
             assert!(differ <= rays.len() / 10_000, "{name}, {}: {differ} shadow rays differ", backend.name());
         });
@@ -151,7 +154,7 @@ fn generic_rays_hit_what_brute_force_hits() {
 }
 
 /// From inside a closed mesh, aimed at points on edges and at vertices: none may leave through our BVH. The driver's ray query
-/// is not ours to mend: it is measured, and may lose 5 % at the vertices.
+/// is not ours to mend: it is measured, and may lose 5 % at the vertices. A leak of 1 ray in 30 000 is found with a probability of 99 % over all of them.
 #[test]
 fn nothing_leaks_through_edges_and_vertices() {
     let mut rng = StdRng::seed_from_u64(12);
@@ -163,7 +166,7 @@ fn nothing_leaks_through_edges_and_vertices() {
         add(&mut scene, icosphere(3), matte(Vec3::ZERO), map);
         let mesh = &scene.meshes[0];
         for (target, share) in [("edges", 0.02), ("vertices", 0.05)] {
-            let rays: Vec<Ray> = (0..100_000)
+            let rays: Vec<Ray> = (0..25_000)
                 .map(|_| {
                     let triangle = mesh.triangles[rng.random_range(0..mesh.triangles.len())];
                     let [a, b, _] = triangle.vertices.map(|v| mesh.positions[v as usize]);
@@ -174,7 +177,7 @@ fn nothing_leaks_through_edges_and_vertices() {
                 })
                 .collect();
             on_every_backend(|backend| {
-                let found = probe_hits(backend, &scene, Function::ClosestHit, &rays);
+                let found = hits(&probe(backend, &scene), Function::ClosestHit, &rays);
                 let leaks = found.iter().filter(|f| f.is_none()).count();
                 println!("{name}, {target}, {}: {leaks} leaks of {} rays", backend.name(), rays.len());
                 let allowed = if backend.ray_query { (share * rays.len() as f64) as usize } else { 0 };
@@ -191,7 +194,7 @@ fn grazing_rays_agree() {
     let mut scene = empty(1, 1);
     let map = Affine3A::from_rotation_x(0.3) * Affine3A::from_rotation_z(0.7);
     add(&mut scene, quad(Vec3::new(-4.0, 0.0, -4.0), Vec3::X * 8.0, Vec3::Z * 8.0), matte(Vec3::ZERO), map);
-    let rays: Vec<Ray> = (0..40_000)
+    let rays: Vec<Ray> = (0..10_000)
         .map(|_| {
             let slope = 10f32.powf(rng.random_range(-5.0..-1.0));
             let along = Vec3::new(rng.random::<f32>() - 0.5, 0.0, rng.random::<f32>() - 0.5).normalize();
@@ -208,7 +211,7 @@ fn grazing_rays_agree() {
         .collect();
     let expected = oracle_hits(&Reference::brute_force(&scene), &rays);
     on_every_backend(|backend| {
-        let found = probe_hits(backend, &scene, Function::ClosestHit, &rays);
+        let found = hits(&probe(backend, &scene), Function::ClosestHit, &rays);
         let hit_or_miss = found.iter().zip(&expected).filter(|(f, e)| f.is_some() != e.is_some()).count();
         // In units of rounding (2^-24) over the slope: how far the hit slides along the plane.
         let slide = |f: &Found, e: &Found, r: &Ray| {
@@ -222,13 +225,13 @@ fn grazing_rays_agree() {
             backend.name(),
             rays.len()
         );
-        assert!(hit_or_miss <= 40, "{}: {hit_or_miss}", backend.name());
+        assert!(hit_or_miss <= 10, "{}: {hit_or_miss}", backend.name());
         assert!(largest < 100.0, "{}: {largest}", backend.name());
     });
 }
 
 /// A ray that leaves a surface does not meet it again at once, whatever the size, the place and the angle: from inside a convex
-/// shell the second hit is on another triangle.
+/// shell the second hit is on another triangle. What is wrong for 1 ray in 35 000 is found with a probability of 99 % over all of them.
 #[test]
 fn surfaces_do_not_hit_themselves() {
     let mut rng = StdRng::seed_from_u64(14);
@@ -260,7 +263,7 @@ fn surfaces_do_not_hit_themselves() {
                 if baked {
                     scene.objects[0].material = None;
                 }
-                let rays: Vec<Ray> = (0..20_000)
+                let rays: Vec<Ray> = (0..5_000)
                     .map(|_| {
                         let origin = map.transform_point3(in_cube(&mut rng) * 0.3);
                         let direction = map.transform_vector3(on_sphere(&mut rng)).normalize();
@@ -268,8 +271,9 @@ fn surfaces_do_not_hit_themselves() {
                     })
                     .collect();
                 on_every_backend(|backend| {
-                    let first = probe_hits(backend, &scene, Function::ClosestHit, &rays);
-                    let second = probe_hits(backend, &scene, Function::Leave, &rays);
+                    let probe = probe(backend, &scene);
+                    let first = hits(&probe, Function::ClosestHit, &rays);
+                    let second = hits(&probe, Function::Leave, &rays);
                     let lost = second.iter().zip(&first).filter(|(s, f)| f.is_some() && s.is_none()).count();
                     let same = second
                         .iter()
@@ -309,7 +313,7 @@ fn rays_that_are_none_miss() {
     on_every_backend(|backend| {
         // What the driver's ray query does with these is undefined.
         if !backend.ray_query {
-            let found = probe_hits(backend, &scene, Function::ClosestHit, &rays);
+            let found = hits(&probe(backend, &scene), Function::ClosestHit, &rays);
             assert!(found.iter().all(Option::is_none), "{found:?}");
         }
     });
@@ -320,7 +324,7 @@ fn rays_that_are_none_miss() {
 fn duplicates_are_traced_or_refused() {
     let mut scene = empty(1, 1);
     let positions = vec![Vec3::new(-1.0, -1.0, -2.0), Vec3::new(1.0, -1.0, -2.0), Vec3::new(0.0, 1.0, -2.0)];
-    add(&mut scene, mesh(positions, &[[0, 1, 2]; 20_000]), matte(Vec3::ZERO), Affine3A::IDENTITY);
+    add(&mut scene, mesh(positions, &[[0, 1, 2]; 8_000]), matte(Vec3::ZERO), Affine3A::IDENTITY);
     let ray = Ray { origin: Vec3::ZERO, direction: -Vec3::Z, t_max: f32::INFINITY };
     on_every_backend(|backend| match Probe::new(&backend.device, &scene, backend.ray_query) {
         Ok(probe) => {

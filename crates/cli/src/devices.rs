@@ -16,7 +16,7 @@ Examples:
 
 Exit codes:
   0  at least one device is usable
-  1  none is; what to install is told
+  1  none is; what to install is said
   2  wrong usage";
 
 /// What to do where no device is usable.

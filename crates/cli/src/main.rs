@@ -2,6 +2,7 @@
 
 #![allow(rustdoc::invalid_html_tags, reason = "doc comments of options are their help, where <NAME> stands for a name")]
 
+mod advice;
 mod bench;
 mod compare;
 mod completions;
@@ -80,7 +81,9 @@ fn main() -> ExitCode {
         1,
         std::sync::Arc::new(std::sync::atomic::AtomicBool::new(true)),
     );
-    let result = match &Args::parse().command {
+    let words: Vec<String> = std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect();
+    let args = Args::try_parse().unwrap_or_else(|error| advice::with_advice(error, &words).exit());
+    let result = match &args.command {
         Command::Render(options) => render::run(options),
         Command::Merge(options) => merge::run(options),
         Command::View(options) => view::run(options),

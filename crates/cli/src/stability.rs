@@ -32,7 +32,7 @@ Exit codes:
 #[derive(Debug, clap::Args)]
 #[command(after_help = HELP)]
 pub struct Options {
-    /// Names of sweeps, as `--list` tells them [default: all].
+    /// Names of sweeps, as `--list` shows them [default: all].
     #[arg(value_name = "SWEEP")]
     sweeps: Vec<String>,
     /// The folder for <SWEEP>.csv and <SWEEP>-<CHART>.svg; it is made if it is missing [default: stability].

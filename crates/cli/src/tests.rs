@@ -3,7 +3,8 @@
 use crate::Args;
 use crate::completions::script;
 use crate::man::{Pages, pages};
-use clap::CommandFactory;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{CommandFactory, Parser};
 use clap_complete::Shell;
 use std::process::Command;
 
@@ -70,4 +71,62 @@ fn every_subcommand_has_a_page_with_examples_and_exit_codes() {
     }
     let render = &others[subcommands.iter().position(|name| name == "render").unwrap()].text;
     assert!(render.contains("\\-\\-backend") && render.contains("ray\\-query"), "{render}");
+}
+
+/// The command lines of a page: lines of its code that begin with `luminaire`, and code within its text that does.
+fn command_lines(page: &str) -> Vec<String> {
+    let mut lines = Vec::new();
+    for (index, part) in page.split("```").enumerate() {
+        if index % 2 == 0 {
+            let code = part.split('`').skip(1).step_by(2);
+            lines.extend(code.filter(|code| code.starts_with("luminaire ")).map(|code| code.replace('\n', " ")));
+            continue;
+        }
+        let joined = part.replace("\\\n", " ");
+        let commands = joined.lines().flat_map(|line| line.split("&&")).map(str::trim);
+        lines.extend(commands.filter(|line| line.starts_with("luminaire ")).map(str::to_owned));
+    }
+    lines
+}
+
+/// The words of a command line, without a comment and without what a shell does behind it.
+fn words(line: &str) -> Vec<String> {
+    let ends = |word: &&str| !(word.starts_with('#') || ["|", ">", "2>", "||", ";", "&"].contains(word));
+    line.split_whitespace().take_while(ends).map(|word| word.trim_matches(['"', '\'', ';']).to_owned()).collect()
+}
+
+/// Every command line of the pages can be read. Where a page names a part of one, something may be missing.
+#[test]
+fn the_commands_of_all_pages_are_read() {
+    let house = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let docs = std::fs::read_dir(house.join("docs")).unwrap().map(|entry| entry.unwrap().path());
+    let pages = docs.filter(|path| path.extension().is_some_and(|ending| ending == "md"));
+    let more = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "scenes/README.md"].map(|name| house.join(name));
+    let (mut count, mut wrong) = (0, Vec::new());
+    for path in pages.chain(more) {
+        for line in command_lines(&std::fs::read_to_string(&path).unwrap()) {
+            count += 1;
+            // What others write in the place of values, and features that are not built in.
+            if line.contains("...") || line.contains("--watch") || line.contains("--denoised") || line.contains("${") {
+                continue;
+            }
+            let Err(error) = Args::try_parse_from(words(&line)) else { continue };
+            let partial = [
+                ErrorKind::MissingRequiredArgument,
+                ErrorKind::DisplayHelp,
+                ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand,
+                ErrorKind::DisplayVersion,
+            ];
+            // A value that is left out, or stands for one.
+            let stands_for_one = match error.get(ContextKind::InvalidValue) {
+                Some(ContextValue::String(value)) => value.chars().all(|c| c.is_ascii_uppercase()),
+                _ => false,
+            };
+            if !partial.contains(&error.kind()) && !stands_for_one {
+                wrong.push(format!("{}: {line}\n{error}", path.display()));
+            }
+        }
+    }
+    assert!(count > 40, "only {count} command lines were found");
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }

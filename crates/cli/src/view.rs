@@ -1,6 +1,7 @@
 //! `luminaire view`.
 
 use crate::shared::backend_name::{self, BackendName};
+use crate::shared::counts::{pixels, samples, seed};
 use crate::shared::estimator::EstimatorOptions;
 use crate::shared::film_size::FilmSize;
 use crate::shared::printing::warn;
@@ -40,20 +41,20 @@ pub struct Options {
     scene: PathBuf,
 
     /// Width of the window in pixels [default: the scene's, or from --height at the scene's aspect ratio].
-    #[arg(long, value_name = "PIXELS", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(16..=i64::from(LARGEST_SIDE)), help_heading = "Window")]
+    #[arg(long, value_name = "PIXELS", allow_negative_numbers = true, value_parser = pixels::<16, LARGEST_SIDE>, help_heading = "Window")]
     width: Option<u32>,
     /// Height of the window in pixels [default: the scene's, or from --width at the scene's aspect ratio].
-    #[arg(long, value_name = "PIXELS", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(16..=i64::from(LARGEST_SIDE)), help_heading = "Window")]
+    #[arg(long, value_name = "PIXELS", allow_negative_numbers = true, value_parser = pixels::<16, LARGEST_SIDE>, help_heading = "Window")]
     height: Option<u32>,
     /// Exposure in stops to begin with: radiance times 2^STOPS [default: the scene's].
     #[arg(long, value_name = "STOPS", allow_negative_numbers = true, value_parser = stops, help_heading = "Window")]
     exposure: Option<f32>,
 
     /// Leave the picture as it is after so many samples a pixel [default: it gets better without end].
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..), help_heading = "Quality")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = samples, help_heading = "Quality")]
     spp: Option<u32>,
     /// Seed of the random numbers: the same seed gives the same picture [default: the scene's].
-    #[arg(long, value_name = "N", allow_negative_numbers = true, help_heading = "Quality")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = seed, help_heading = "Quality")]
     seed: Option<u32>,
     #[command(flatten)]
     estimator: EstimatorOptions,

@@ -1,8 +1,10 @@
 //! `luminaire bench`: its files, its page, its baseline, and every way in which the command can be wrong.
 
+mod common;
 #[path = "../../measure/tests/documents/html.rs"]
 mod html;
 
+use common::names;
 use html::check_page;
 use serde_json::Value;
 use std::path::Path;
@@ -39,13 +41,6 @@ fn said(output: &Output) -> String {
 
 fn json(path: &Path) -> Value {
     serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
-}
-
-fn names(folder: &Path) -> Vec<String> {
-    let mut names: Vec<_> =
-        std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-    names.sort();
-    names
 }
 
 /// One run on the CPU, with all its files; then held against better and worse ones.

@@ -1,12 +1,17 @@
 //! Renders that are killed, interrupted, divided or given more samples: nothing is lost, and the picture is the same.
 
-#[path = "../../../tests/common/devices.rs"]
 mod common;
+#[path = "../../../tests/common/devices.rs"]
+mod devices;
 
+use common::running::Running;
 use luminaire::picture::{self, Picture};
-use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
+use std::path::PathBuf;
+use std::process::{Command, Output};
 use std::time::Duration;
+
+/// Samples of a render that has to be interrupted: more where it was at its end before the signal came, as on a machine that is busy or fast.
+const LONGER_AND_LONGER: [u32; 4] = [200, 1000, 5000, 25_000];
 
 /// A folder of one test.
 struct Folder(tempfile::TempDir);
@@ -47,10 +52,12 @@ impl Folder {
     }
 
     fn names(&self) -> Vec<String> {
-        let entries = std::fs::read_dir(self.0.path()).unwrap();
-        let mut names: Vec<String> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
-        names.sort();
-        names
+        common::names(self.0.path())
+    }
+
+    /// Waits until a program has written a file.
+    fn wait_for(&self, name: &str, program: &Running) {
+        program.until(name, || self.path(name).exists().then_some(()));
     }
 }
 
@@ -76,18 +83,6 @@ fn fails(mut command: Command, code: i32, parts: &[&str]) {
     assert!(!said.contains("panicked"), "{said}");
 }
 
-/// Waits until a file is there. A render that takes minutes to write it is as good as hung.
-fn wait_for(path: &Path, child: &mut Child) {
-    for _ in 0..6000 {
-        if path.exists() {
-            return;
-        }
-        assert!(child.try_wait().unwrap().is_none(), "the render ended before it wrote {}", path.display());
-        std::thread::sleep(Duration::from_millis(10));
-    }
-    panic!("{} is not written", path.display());
-}
-
 /// The largest relative difference of two pictures' numbers.
 fn furthest(a: &Picture, b: &Picture) -> f64 {
     assert_eq!((a.width, a.height), (b.width, b.height));
@@ -96,68 +91,77 @@ fn furthest(a: &Picture, b: &Picture) -> f64 {
 }
 
 /// Kills a render at random moments until one run reaches the end; the picture must be that of a render that nobody killed.
-fn killed_and_resumed(backend: &str, spp: u32) {
-    let folder = Folder::new();
-    done(folder.render_on(backend, &format!("--spp {spp} -o whole.exr --quiet")));
+fn killed_and_resumed(backend: &str, samples: [u32; 3]) {
+    let enough = samples.into_iter().any(|spp| {
+        let folder = Folder::new();
+        done(folder.render_on(backend, &format!("--spp {spp} -o whole.exr --quiet")));
+        let kills = kills(&folder, backend, spp);
+        assert_eq!(folder.bytes("whole.exr"), folder.bytes("killed.exr"), "after {kills} kills");
+        assert_eq!(folder.names(), ["c.exr", "killed.exr", "whole.exr"], "something is left over");
+        kills >= 2
+    });
+    assert!(enough, "the renders are too short to be killed");
+}
+
+/// Renders `killed.exr`, and kills that up to eight times; how often it was.
+fn kills(folder: &Folder, backend: &str, spp: u32) -> u32 {
     let options = format!("--spp {spp} -o killed.exr --checkpoint c.exr --checkpoint-every 0.01 --resume --quiet");
-    let mut kills = 0;
-    loop {
-        let mut child = folder.render_on(backend, &options).spawn().unwrap();
+    let saved = || std::fs::metadata(folder.path("c.exr")).and_then(|file| file.modified()).ok();
+    for kills in 0..8 {
+        let before = saved();
+        let program = Running::start(&mut folder.render_on(backend, &options));
         // Not before something new is saved: else a slow machine would never come to an end.
-        let before = std::fs::metadata(folder.path("c.exr")).and_then(|m| m.modified()).ok();
-        let ended = loop {
-            if let Some(status) = child.try_wait().unwrap() {
-                break Some(status);
-            }
-            let now = std::fs::metadata(folder.path("c.exr")).and_then(|m| m.modified()).ok();
-            if now != before && kills < 8 {
-                std::thread::sleep(Duration::from_micros(rand::random_range(0..60_000)));
-                break None;
-            }
-            std::thread::sleep(Duration::from_millis(1));
-        };
-        if let Some(status) = ended {
-            assert!(status.success());
-            break;
+        program.until("a checkpoint, or the end", || (saved() != before || program.ended().is_some()).then_some(()));
+        std::thread::sleep(Duration::from_micros(rand::random_range(0..60_000)));
+        if let Some(status) = program.ended() {
+            assert!(status.success(), "{}", program.state());
+            return kills;
         }
-        child.kill().unwrap();
-        child.wait().unwrap();
-        kills += 1;
-        assert!(!folder.path("killed.exr").exists() || kills > 1, "a picture of an unfinished render");
+        program.kill();
+        if folder.path("killed.exr").exists() {
+            assert_eq!(folder.bytes("whole.exr"), folder.bytes("killed.exr"), "a picture of an unfinished render");
+        }
     }
-    assert!(kills >= 2, "only {kills} kills: the render is too short to be killed");
-    assert_eq!(folder.bytes("whole.exr"), folder.bytes("killed.exr"), "after {kills} kills");
-    assert_eq!(folder.names(), ["c.exr", "killed.exr", "whole.exr"], "something is left over");
+    done(folder.render_on(backend, &options));
+    8
 }
 
 #[test]
 fn a_killed_render_goes_on_to_the_same_bits() {
-    killed_and_resumed("cpu", 256);
+    killed_and_resumed("cpu", [256, 1024, 4096]);
 }
 
 #[test]
 fn a_killed_render_on_vulkan_goes_on_to_the_same_bits() {
-    let bench = common::bench();
+    let bench = devices::bench();
     if bench.backends().contains(&luminaire::backend::Backend::ComputeBvh) {
-        killed_and_resumed("compute-bvh", 1024);
+        killed_and_resumed("compute-bvh", [1024, 4096, 16_384]);
     }
 }
 
 #[test]
 fn an_interrupted_render_goes_on_to_the_same_bits() {
-    let folder = Folder::new();
-    done(folder.render("--spp 200 -o whole.exr --quiet"));
-    let options = "--spp 200 -o part.exr --checkpoint c.exr --checkpoint-every 0.05 --resume";
-    let mut child = folder.render(options).stderr(Stdio::piped()).spawn().unwrap();
-    wait_for(&folder.path("c.exr"), &mut child);
-    let signalled = Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap();
-    assert!(signalled.success());
-    let output = child.wait_with_output().unwrap();
-    assert_eq!(output.status.code(), Some(130), "{}", said(&output));
-    assert!(said(&output).contains("--resume goes on"), "{}", said(&output));
-    assert_ne!(folder.bytes("whole.exr"), folder.bytes("part.exr"), "the render was not interrupted");
-    assert!(done(folder.render(options)).contains("going on from"));
-    assert_eq!(folder.bytes("whole.exr"), folder.bytes("part.exr"));
+    for spp in LONGER_AND_LONGER {
+        let folder = Folder::new();
+        let options = format!("--spp {spp} -o part.exr --checkpoint c.exr --checkpoint-every 0.05");
+        let program = Running::start(&mut folder.render(&options));
+        folder.wait_for("c.exr", &program);
+        // The shell's own `kill`: a bare system has no other.
+        let signalled = Command::new("sh").args(["-c", &format!("kill -s TERM {}", program.id())]).status().unwrap();
+        assert!(signalled.success());
+        let output = program.output();
+        if output.status.success() {
+            continue;
+        }
+        assert_eq!(output.status.code(), Some(130), "{}", said(&output));
+        assert!(said(&output).contains("the same command with --resume goes on"), "{}", said(&output));
+        done(folder.render(&format!("--spp {spp} -o whole.exr --quiet")));
+        assert_ne!(folder.bytes("whole.exr"), folder.bytes("part.exr"), "the render was not interrupted");
+        assert!(done(folder.render(&format!("{options} --resume"))).contains("going on from"));
+        assert_eq!(folder.bytes("whole.exr"), folder.bytes("part.exr"));
+        return;
+    }
+    panic!("no render is long enough to be interrupted");
 }
 
 #[test]
@@ -292,11 +296,10 @@ fn parts_in_any_order_are_the_whole() {
 #[test]
 fn an_unfinished_part_is_not_merged() {
     let folder = Folder::new();
-    let options = "--samples 0..400 -o part.exr --checkpoint c.exr --checkpoint-every 0.01";
-    let mut child = folder.render(options).stderr(Stdio::null()).spawn().unwrap();
-    wait_for(&folder.path("c.exr"), &mut child);
-    child.kill().unwrap();
-    child.wait().unwrap();
+    let options = "--samples 0..1000000 -o part.exr --checkpoint c.exr --checkpoint-every 0.01";
+    let program = Running::start(&mut folder.render(options));
+    folder.wait_for("c.exr", &program);
+    program.kill();
     // Also where the kill came between two passes, so that all pixels have equally many samples.
     fails(folder.luminaire(&["merge", "c.exr", "-o", "a.exr"]), 2, &["c.exr", "not finished"]);
 }
@@ -325,7 +328,7 @@ fn a_device_that_fails_costs_nothing() {
     let options = "--spp 64 -o lost.exr --checkpoint c.exr --resume";
     let mut losing = folder.render(options);
     losing.env("LUMINAIRE_LOSE_DEVICE_AFTER", "9");
-    fails(losing, 3, &["error: ", "lost", "--resume goes on"]);
+    fails(losing, 3, &["error: ", "lost", "the same command goes on from the checkpoint"]);
     assert_ne!(folder.bytes("whole.exr"), folder.bytes("lost.exr"), "the render did not fail");
     done(folder.render(options));
     assert_eq!(folder.bytes("whole.exr"), folder.bytes("lost.exr"));
@@ -333,33 +336,53 @@ fn a_device_that_fails_costs_nothing() {
 
 #[test]
 fn a_folder_that_disappears_costs_only_what_was_to_be_written_there() {
-    let folder = Folder::new();
-    std::fs::create_dir(folder.path("out")).unwrap();
-    let options = "--spp 200 --checkpoint c.exr --checkpoint-every 0.01 --resume -o";
-    let mut child = folder.render(&format!("{options} out/a.exr")).stderr(Stdio::piped()).spawn().unwrap();
-    wait_for(&folder.path("c.exr"), &mut child);
-    std::fs::remove_dir(folder.path("out")).unwrap();
-    let output = child.wait_with_output().unwrap();
-    assert_eq!(output.status.code(), Some(1), "{}", said(&output));
-    assert!(said(&output).contains("out/a.exr") && said(&output).contains("in the checkpoint"), "{}", said(&output));
-    done(folder.render(&format!("{options} a.exr --quiet")));
-    done(folder.render("--spp 200 -o whole.exr --quiet"));
-    assert_eq!(folder.bytes("a.exr"), folder.bytes("whole.exr"));
+    for spp in LONGER_AND_LONGER {
+        let folder = Folder::new();
+        std::fs::create_dir(folder.path("out")).unwrap();
+        let options = format!("--spp {spp} --checkpoint c.exr --checkpoint-every 0.01 --resume -o");
+        let program = Running::start(&mut folder.render(&format!("{options} out/a.exr")));
+        folder.wait_for("c.exr", &program);
+        // Also with a picture in it: that render was at its end.
+        std::fs::remove_dir_all(folder.path("out")).unwrap();
+        let output = program.output();
+        if output.status.success() {
+            continue;
+        }
+        let said = said(&output);
+        assert_eq!(output.status.code(), Some(1), "{said}");
+        assert!(said.contains("out/a.exr") && said.contains("in the checkpoint"), "{said}");
+        done(folder.render(&format!("{options} a.exr --quiet")));
+        done(folder.render(&format!("--spp {spp} -o whole.exr --quiet")));
+        assert_eq!(folder.bytes("a.exr"), folder.bytes("whole.exr"));
+        return;
+    }
+    panic!("no render is long enough to lose its folder");
 }
 
 #[test]
 fn a_checkpoint_that_cannot_be_written_does_not_end_a_render() {
-    let folder = Folder::new();
-    std::fs::create_dir(folder.path("saves")).unwrap();
-    let options = "--spp 200 --checkpoint saves/c.exr --checkpoint-every 0.01 -o a.exr";
-    let mut child = folder.render(options).stderr(Stdio::piped()).spawn().unwrap();
-    wait_for(&folder.path("saves/c.exr"), &mut child);
-    std::fs::remove_dir_all(folder.path("saves")).unwrap();
-    let output = child.wait_with_output().unwrap();
-    let said = said(&output);
-    // The picture is there all the same.
-    assert_eq!(output.status.code(), Some(1), "{said}");
-    assert!(said.contains("warning: cannot write saves/c.exr") && said.contains("error: cannot write saves"), "{said}");
-    done(folder.render("--spp 200 -o whole.exr --quiet"));
-    assert_eq!(folder.bytes("a.exr"), folder.bytes("whole.exr"));
+    for spp in LONGER_AND_LONGER {
+        let folder = Folder::new();
+        std::fs::create_dir(folder.path("saves")).unwrap();
+        let options = format!("--spp {spp} --checkpoint saves/c.exr --checkpoint-every 0.01 -o a.exr");
+        let program = Running::start(&mut folder.render(&options));
+        folder.wait_for("saves/c.exr", &program);
+        // Again where the render puts a file there meanwhile.
+        while std::fs::remove_dir_all(folder.path("saves")).is_err() && folder.path("saves").exists() {}
+        let output = program.output();
+        if output.status.success() {
+            continue;
+        }
+        let said = said(&output);
+        // The picture is there all the same.
+        assert_eq!(output.status.code(), Some(1), "{said}");
+        if !said.contains("warning: cannot write saves/c.exr") {
+            continue; // Only the last checkpoint was still to come.
+        }
+        assert!(said.contains("error: cannot write saves"), "{said}");
+        done(folder.render(&format!("--spp {spp} -o whole.exr --quiet")));
+        assert_eq!(folder.bytes("a.exr"), folder.bytes("whole.exr"));
+        return;
+    }
+    panic!("no render is long enough to lose its folder");
 }

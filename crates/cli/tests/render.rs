@@ -2,6 +2,7 @@
 
 mod common;
 
+use common::running::Running;
 use common::{Folder, stderr};
 use std::process::Command;
 
@@ -104,18 +105,22 @@ fn time_ends_a_render() {
 fn an_interrupt_writes_what_there_is() {
     let folder = Folder::new();
     for signal in ["INT", "TERM"] {
+        let saves = ["--checkpoint", "c.exr", "--checkpoint-every", "0.01"];
         let words = ["render", "good.obj", "--backend", "cpu", "--width", "64", "--time", "600"];
-        let child = folder.luminaire(&words).stderr(std::process::Stdio::piped()).spawn().unwrap();
-        std::thread::sleep(std::time::Duration::from_secs(2));
+        let program = Running::start(&mut folder.luminaire(&[&words[..], &saves].concat()));
+        // It has rendered something.
+        program.until("a checkpoint", || folder.path().join("c.exr").exists().then_some(()));
         // The shell's own `kill`: a bare system has no other.
-        let kill = format!("kill -s {signal} {}", child.id());
+        let kill = format!("kill -s {signal} {}", program.id());
         assert!(Command::new("sh").args(["-c", &kill]).status().unwrap().success());
-        let output = child.wait_with_output().unwrap();
+        let output = program.output();
         let said = stderr(&output);
         assert_eq!(output.status.code(), Some(130), "{said}");
         assert!(said.contains("interrupted"), "{said}");
         assert!(image::open(folder.path().join("good.png")).is_ok(), "{said}");
-        std::fs::remove_file(folder.path().join("good.png")).unwrap();
+        for name in ["good.png", "c.exr"] {
+            std::fs::remove_file(folder.path().join(name)).unwrap();
+        }
     }
     assert_eq!(folder.names(), ["good.mtl", "good.obj"], "no temporary file is left");
 }

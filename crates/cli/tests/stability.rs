@@ -1,8 +1,10 @@
 //! `luminaire stability`. What the sweeps promise, and their page, is tested in `crates/measure`.
 
+mod common;
 #[path = "../../measure/tests/documents/svg.rs"]
 mod svg;
 
+use common::names;
 use luminaire_measure::stability::{SUMMARY, SWEEPS};
 use std::path::Path;
 use std::process::{Command, Output};
@@ -11,13 +13,6 @@ use svg::texts;
 fn stability(folder: &Path, words: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_luminaire"));
     command.current_dir(folder).arg("stability").args(words).output().unwrap()
-}
-
-fn names(folder: &Path) -> Vec<String> {
-    let mut names: Vec<_> =
-        std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-    names.sort();
-    names
 }
 
 #[test]

@@ -2,27 +2,29 @@
 //!
 //! It wants Xvfb, xdotool and a Vulkan device that can present; what is missing is said as SKIP, and with `LUMINAIRE_REQUIRE_GPU=1` it is a failure.
 
-#[path = "../../../tests/common/devices.rs"]
 mod common;
+#[path = "../../../tests/common/devices.rs"]
+mod devices;
 
-use common::skip;
+use common::running::Running;
+use devices::skip;
 use image::{Rgb, RgbImage};
 use luminaire::picture;
-use std::io::{BufRead, BufReader, Read};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
-use std::time::{Duration, Instant};
+use std::process::{Command, Output};
 
 const CORNELL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/cornell/cornell.toml");
 
 /// Wide enough for the scale of an error map.
 const SIZE: (u32, u32) = (160, 120);
 const SPP: &str = "8";
-const PATIENCE: Duration = Duration::from_secs(30);
+/// The first row below a message, which stays for three seconds.
+const BELOW: u32 = 32;
 
 /// A virtual display; it ends with this.
 struct Display {
-    server: Child,
+    server: Running,
     name: String,
     folder: tempfile::TempDir,
 }
@@ -36,16 +38,15 @@ impl Display {
             return None;
         }
         let folder = tempfile::tempdir().unwrap();
-        let mut server = Command::new("Xvfb")
-            .args(["-displayfd", "1", "-screen", "0", "800x600x24", "-nolisten", "tcp", "-fbdir"])
-            .arg(folder.path())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn()
-            .unwrap();
-        let mut line = String::new();
-        BufReader::new(server.stdout.as_mut().unwrap()).read_line(&mut line).unwrap();
-        Some(Display { server, name: format!(":{}", line.trim()), folder })
+        // Without -noreset the server begins anew whenever its last client leaves, which every look by xdotool is, and refuses whoever comes meanwhile:
+        // of 200 clients 26.
+        let words = ["-displayfd", "1", "-screen", "0", "800x600x24", "-nolisten", "tcp", "-noreset", "-fbdir"];
+        let server = Running::start(Command::new("Xvfb").args(words).arg(folder.path()));
+        let number = server.until("the number of the display", || {
+            let said = server.stdout();
+            said.ends_with('\n').then(|| said.trim().to_owned())
+        });
+        Some(Display { server, name: format!(":{number}"), folder })
     }
 
     /// The screen's upper left corner: Xvfb keeps its memory in a file, in the format of xwd.
@@ -62,64 +63,60 @@ impl Display {
         })
     }
 
-    fn xdotool(&self, words: &str) -> String {
-        let output = Command::new("xdotool").args(words.split(' ')).env("DISPLAY", &self.name).output().unwrap();
-        assert!(output.status.success(), "xdotool {words}: {}", String::from_utf8_lossy(&output.stderr));
-        String::from_utf8(output.stdout).unwrap().trim().to_owned()
-    }
-}
-
-impl Drop for Display {
-    fn drop(&mut self) {
-        let _ = self.server.kill();
-        let _ = self.server.wait();
+    /// What `xdotool` answers, or what it says where it fails, as where the window is not there.
+    fn ask(&self, words: &[&str]) -> Result<String, String> {
+        let output = Command::new("xdotool").args(words).env("DISPLAY", &self.name).output().unwrap();
+        match output.status.success() {
+            true => Ok(String::from_utf8_lossy(&output.stdout).trim().to_owned()),
+            false => Err(format!("xdotool {words:?}: {}", String::from_utf8_lossy(&output.stderr).trim())),
+        }
     }
 }
 
 /// A `luminaire view` on a display.
 struct View<'a> {
     display: &'a Display,
-    program: Child,
+    program: Running,
     window: String,
     folder: &'a Path,
 }
 
 impl<'a> View<'a> {
     fn start(display: &'a Display, folder: &'a Path, words: &[&str]) -> Self {
-        let program = luminaire(folder, "view", words)
-            .env("DISPLAY", &display.name)
-            .env_remove("WAYLAND_DISPLAY")
-            .env_remove("WAYLAND_SOCKET")
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap();
-        let mut view = View { display, program, window: String::new(), folder };
-        let found =
-            || Command::new("xdotool").args(["search", "--name", "luminaire"]).env("DISPLAY", &display.name).output();
-        view.until("there is a window", || {
-            let window = String::from_utf8(found().unwrap().stdout).unwrap();
-            (!window.is_empty()).then(|| window.trim().to_owned())
+        let program = Running::start(
+            luminaire(folder, "view", words)
+                .env("DISPLAY", &display.name)
+                .env_remove("WAYLAND_DISPLAY")
+                .env_remove("WAYLAND_SOCKET"),
+        );
+        // A window has its name before it is shown, and only what is shown takes the keys.
+        let window = program.until("there is a window", || {
+            display.ask(&["search", "--onlyvisible", "--name", "luminaire"]).ok().filter(|window| !window.is_empty())
         });
-        view.window = String::from_utf8(found().unwrap().stdout).unwrap().trim().to_owned();
-        display.xdotool(&format!("windowfocus {}", view.window));
+        let view = View { display, program, window, folder };
+        view.xdotool(&format!("windowfocus {}", view.window));
         view
     }
 
     /// Waits until `happens` gives something.
     fn until<T>(&self, what: &str, happens: impl Fn() -> Option<T>) -> T {
-        let start = Instant::now();
-        loop {
-            if let Some(found) = happens() {
-                return found;
-            }
-            assert!(start.elapsed() < PATIENCE, "never came: {what}; the title is {:?}", self.title());
-            std::thread::sleep(Duration::from_millis(30));
-        }
+        self.program.wait_until(happens).unwrap_or_else(|reason| {
+            let title = self.display.ask(&["getwindowname", &self.window]).unwrap_or_else(|error| error);
+            panic!("never came: {what}: {reason}; the title is {title:?}\n{}", self.program.state())
+        })
+    }
+
+    /// Has `xdotool` do something; what it answers.
+    fn xdotool(&self, words: &str) -> String {
+        let words: Vec<&str> = words.split(' ').collect();
+        self.display.ask(&words).unwrap_or_else(|error| {
+            let server = self.display.server.ended().map_or("", |_| "; the X server ended");
+            panic!("{error}{server}\n{}", self.program.state())
+        })
     }
 
     fn title(&self) -> String {
-        self.display.xdotool(&format!("getwindowname {}", self.window))
+        self.xdotool(&format!("getwindowname {}", self.window))
     }
 
     /// Waits for a title that contains all of these words.
@@ -129,15 +126,16 @@ impl<'a> View<'a> {
         })
     }
 
-    /// Waits until the window shows `expected` to the last bit, as far as rows from the top go.
-    fn shows(&self, what: &str, expected: &RgbImage, rows: u32) {
-        let crop = |picture: &RgbImage| image::imageops::crop_imm(picture, 0, 0, expected.width(), rows).to_image();
-        let expected = crop(expected);
-        self.until(what, || (crop(&self.display.screen(expected.dimensions())) == expected).then_some(()));
+    /// Waits until the window shows `expected` to the last bit in these rows.
+    fn shows(&self, what: &str, expected: &RgbImage, rows: Range<u32>) {
+        let (width, height) = (expected.width(), rows.end - rows.start);
+        let crop = |picture: &RgbImage| image::imageops::crop_imm(picture, 0, rows.start, width, height).to_image();
+        let expected_rows = crop(expected);
+        self.until(what, || (crop(&self.display.screen(expected.dimensions())) == expected_rows).then_some(()));
     }
 
     fn key(&self, keys: &str) {
-        self.display.xdotool(&format!("key {keys}"));
+        self.xdotool(&format!("key {keys}"));
     }
 
     fn file(&self, name: &str) -> PathBuf {
@@ -147,26 +145,9 @@ impl<'a> View<'a> {
     }
 
     /// Ends it with Esc; what it said.
-    fn quit(mut self) -> Output {
+    fn quit(self) -> Output {
         self.key("Escape");
-        self.until("the end", || (!Path::new(&format!("/proc/{}/exe", self.program.id())).exists()).then_some(()));
-        let read = |stream: &mut dyn Read| {
-            let mut bytes = vec![];
-            stream.read_to_end(&mut bytes).unwrap();
-            bytes
-        };
-        Output {
-            stdout: read(self.program.stdout.as_mut().unwrap()),
-            stderr: read(self.program.stderr.as_mut().unwrap()),
-            status: self.program.wait().unwrap(),
-        }
-    }
-}
-
-impl Drop for View<'_> {
-    fn drop(&mut self) {
-        let _ = self.program.kill();
-        let _ = self.program.wait();
+        self.program.output()
     }
 }
 
@@ -207,13 +188,13 @@ fn the_window_shows_what_render_writes_and_obeys() {
     let words = [CORNELL, "--width", "160", "--height", "120", "--spp", SPP, bvh[0], bvh[1]];
     let view = View::start(&display, folder, &words);
     let start = rendered(folder, CORNELL, SIZE, &bvh);
-    view.shows("the picture of `render`", &start, SIZE.1);
+    view.shows("the picture of `render`", &start, 0..SIZE.1);
     let title = view.titled(&["8.0 samples a pixel", "Mrays/s", "error", "compute-bvh on "]);
 
     // Another backend gives the same picture, but for rounding.
     view.key("b");
     view.titled(&["8.0 samples a pixel", "cpu on "]);
-    view.shows("the reference's picture", &rendered(folder, CORNELL, SIZE, &["--backend", "cpu"]), SIZE.1);
+    view.shows("the reference's picture", &rendered(folder, CORNELL, SIZE, &["--backend", "cpu"]), BELOW..SIZE.1);
     view.key("b");
     // Ray query, or where there is none the first again.
     view.until("a backend on Vulkan", || (!view.title().contains("cpu on ")).then_some(()));
@@ -229,7 +210,7 @@ fn the_window_shows_what_render_writes_and_obeys() {
     view.shows(
         "the estimator cosine",
         &rendered(folder, CORNELL, SIZE, &["--estimator", "cosine", bvh[0], bvh[1]]),
-        SIZE.1,
+        BELOW..SIZE.1,
     );
     view.key("n");
     view.key("n");
@@ -237,14 +218,15 @@ fn the_window_shows_what_render_writes_and_obeys() {
     view.titled(&["8.0 samples a pixel", ", default"]);
 
     // A drag orbits; the camera that is written gives the picture that is seen.
-    display.xdotool("mousemove 60 60 mousedown 1 mousemove 90 50 mousemove 100 45 mouseup 1 key c");
+    view.xdotool("mousemove 60 60 mousedown 1 mousemove 90 50 mousemove 100 45 mouseup 1 key c");
     let snippet = std::fs::read_to_string(view.file("cornell-camera-1.toml")).unwrap();
     assert!(snippet.starts_with("[sensor]\n") && !snippet.contains("-800.0]"), "{snippet}");
     let object = "[render]\nexposure = 1\n[[object]]\nmesh = \"cornell.obj\"\n";
     let object = object.replace("cornell.obj", &CORNELL.replace(".toml", ".obj"));
     std::fs::write(folder.join("turned.toml"), snippet.clone() + &object).unwrap();
     let turned = rendered(folder, "turned.toml", SIZE, &bvh);
-    view.shows("the scene from the side", &turned, SIZE.1);
+    // Once the message at the upper edge is gone.
+    view.shows("the scene from the side", &turned, 0..SIZE.1);
 
     // Saved pictures are what is seen, and none replaces another.
     view.key("p");
@@ -256,8 +238,9 @@ fn the_window_shows_what_render_writes_and_obeys() {
     view.key("2");
     view.titled(&["error map", "8.0 samples a pixel"]);
     rendered(folder, "turned.toml", SIZE, &["--error-map", "error.png", bvh[0], bvh[1]]);
-    // Once the message at the upper edge is gone; the scale covers the last 40 rows.
-    view.shows("the error map of `render`", &image::open(folder.join("error.png")).unwrap().to_rgb8(), SIZE.1 - 40);
+    // The scale covers the last 40 rows.
+    let map = image::open(folder.join("error.png")).unwrap().to_rgb8();
+    view.shows("the error map of `render`", &map, BELOW..SIZE.1 - 40);
     view.key("p");
     view.file("cornell-view-2.png");
     assert_eq!(
@@ -267,10 +250,10 @@ fn the_window_shows_what_render_writes_and_obeys() {
 
     // The camera of the scene, another window, and the first surfaces.
     view.key("1 Home");
-    view.shows("the first camera", &start, SIZE.1);
+    view.shows("the first camera", &start, BELOW..SIZE.1);
     let size = (240, 100);
-    display.xdotool(&format!("windowsize {} {} {}", view.window, size.0, size.1));
-    view.shows("the resized window", &rendered(folder, CORNELL, size, &bvh), size.1);
+    view.xdotool(&format!("windowsize {} {} {}", view.window, size.0, size.1));
+    view.shows("the resized window", &rendered(folder, CORNELL, size, &bvh), BELOW..size.1);
     let middle = |expected: [u8; 3]| {
         let near = |found: &Rgb<u8>| found.0.iter().zip(expected).all(|(a, b)| a.abs_diff(b) < 6);
         view.until(&format!("{expected:?} in the middle"), || {
@@ -287,9 +270,9 @@ fn the_window_shows_what_render_writes_and_obeys() {
     middle([222, 222, 222]);
 
     // Hidden and shown again; then the help.
-    display.xdotool(&format!("windowunmap {0} windowmap {0} windowfocus {0}", view.window));
+    view.xdotool(&format!("windowunmap {0} windowmap {0} windowfocus {0}", view.window));
     view.key("1");
-    view.shows("the picture after it was hidden", &rendered(folder, CORNELL, size, &bvh), size.1);
+    view.shows("the picture after it was hidden", &rendered(folder, CORNELL, size, &bvh), BELOW..size.1);
     view.key("h");
     let white = || display.screen(size).pixels().filter(|pixel| pixel.0 == [255; 3]).count();
     view.until("the help", || (white() > 1500).then_some(()));

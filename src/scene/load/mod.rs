@@ -7,6 +7,7 @@ mod far;
 mod loader;
 mod material_draft;
 mod mtl;
+mod near_name;
 mod obj;
 mod other_formats;
 mod polygon;
@@ -17,6 +18,7 @@ mod toml;
 
 use crate::scene::Scene;
 use crate::{Error, Result};
+use near_name::instead_of;
 use std::path::Path;
 
 /// World coordinates beyond this are refused: their squares would leave the range of `f32`.
@@ -30,13 +32,14 @@ const LARGEST_COORDINATE: f64 = 1e18;
 pub fn load(path: &Path) -> Result<Scene> {
     let ending = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
     let mut scene = match ending.as_str() {
-        "toml" => toml::load(path)?,
-        "obj" => bare_mesh::load(path)?,
+        "toml" => toml::load(path).map_err(with_what_is_there(path))?,
+        "obj" => bare_mesh::load(path).map_err(with_what_is_there(path))?,
         _ => {
             let what = other_formats::named(path).unwrap_or("not a scene".into());
             return Err(Error::Usage(format!(
-                "{}: {what}; expected a scene file ending in .toml or a mesh ending in .obj",
-                path.display()
+                "{}: {what}; expected a scene file ending in .toml or a mesh ending in .obj{}",
+                path.display(),
+                what_else(path, &ending)
             )));
         }
     };
@@ -63,4 +66,38 @@ pub fn load(path: &Path) -> Result<Scene> {
         ));
     }
     Ok(scene)
+}
+
+/// Names what is there in the place of a scene that is missing.
+fn with_what_is_there(scene: &Path) -> impl Fn(Error) -> Error {
+    move |error| match error {
+        Error::Read { path, reason } if path == scene => Error::Read { reason: reason + &instead_of(scene), path },
+        other => other,
+    }
+}
+
+/// What somebody may mean who names no scene.
+fn what_else(path: &Path, ending: &str) -> String {
+    if path.is_dir() {
+        let entries = std::fs::read_dir(path).into_iter().flatten().flatten();
+        let mut scenes: Vec<_> = entries.map(|entry| entry.path()).filter(|path| is_scene(path)).collect();
+        scenes.sort();
+        return match scenes.first() {
+            Some(scene) => format!("; this is a folder, in which there is {}", scene.display()),
+            None => "; this is a folder".into(),
+        };
+    }
+    if ["png", "exr", "hdr", "jpg", "jpeg"].contains(&ending) {
+        return "; the scene comes first, and the picture behind -o: luminaire render SCENE -o PICTURE".into();
+    }
+    let with_ending = ["toml", "obj"].map(|ending| std::path::PathBuf::from(format!("{}.{ending}", path.display())));
+    match with_ending.iter().find(|path| path.is_file()) {
+        Some(scene) if ending.is_empty() => format!(": there is {}", scene.display()),
+        _ => String::new(),
+    }
+}
+
+/// Whether a file is a scene by its name.
+fn is_scene(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml") || ending.eq_ignore_ascii_case("obj"))
 }

@@ -36,8 +36,9 @@ pub fn finish(mut outcome: Outcome, pictures: &[PathBuf], notes: Notes) -> Resul
     let done = interrupts::hold_off(|| outputs::write(&mut outcome, written));
     let saved = outcome.saved.take();
     let kept = matches!(saved, Some(Ok(())));
+    let again = if outcome.options.resume { "the same command" } else { "the same command with --resume" };
     if done.is_err() && kept {
-        notes.note("the samples are in the checkpoint; the same command with --resume writes the pictures again");
+        notes.note(&format!("the samples are in the checkpoint; {again} writes the pictures again"));
     }
     done?;
     saved.transpose()?;
@@ -55,7 +56,7 @@ pub fn finish(mut outcome: Outcome, pictures: &[PathBuf], notes: Notes) -> Resul
                 "interrupted; the picture holds what was done until then"
             });
             if kept {
-                notes.note("the same command with --resume goes on from the checkpoint");
+                notes.note(&format!("{again} goes on from the checkpoint"));
             }
             Ok(ExitCode::from(INTERRUPTED))
         }
@@ -65,9 +66,7 @@ pub fn finish(mut outcome: Outcome, pictures: &[PathBuf], notes: Notes) -> Resul
                 notes.note("the render failed; the picture holds what was done until then");
             }
             if kept {
-                notes.note(
-                    "the same command with --resume goes on from the checkpoint, also on another --device or --backend",
-                );
+                notes.note(&format!("{again} goes on from the checkpoint, also on another --device or --backend"));
             }
             Ok(ExitCode::from(DEVICE_FAILED))
         }

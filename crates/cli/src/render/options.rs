@@ -1,6 +1,7 @@
 //! What to render, and how.
 
 use crate::shared::backend_name::BackendName;
+use crate::shared::counts::{pixels, samples, seed};
 use crate::shared::estimator::EstimatorOptions;
 use crate::shared::exit_codes::EXIT_CODES;
 use crate::shared::values::{Pixel, noise, pixel, range, seconds, stops};
@@ -63,7 +64,7 @@ pub struct Options {
     pub quiet: bool,
 
     /// Samples a pixel [default: the scene's, unless there is --time or --noise].
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..), help_heading = "Quality")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = samples, help_heading = "Quality")]
     pub spp: Option<u32>,
     /// Stop rendering after so many seconds; with --spp, whichever comes first.
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = seconds, help_heading = "Quality")]
@@ -77,13 +78,13 @@ pub struct Options {
     #[arg(long, value_name = "A..B", value_parser = range, conflicts_with_all = ["spp", "time", "noise"], help_heading = "Quality")]
     pub samples: Option<Range<u32>>,
     /// Width in pixels [default: the scene's, or from --height at the scene's aspect ratio].
-    #[arg(long, value_name = "PIXELS", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=i64::from(LARGEST_SIDE)), help_heading = "Quality")]
+    #[arg(long, value_name = "PIXELS", allow_negative_numbers = true, value_parser = pixels::<1, LARGEST_SIDE>, help_heading = "Quality")]
     pub width: Option<u32>,
     /// Height in pixels [default: the scene's, or from --width at the scene's aspect ratio].
-    #[arg(long, value_name = "PIXELS", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=i64::from(LARGEST_SIDE)), help_heading = "Quality")]
+    #[arg(long, value_name = "PIXELS", allow_negative_numbers = true, value_parser = pixels::<1, LARGEST_SIDE>, help_heading = "Quality")]
     pub height: Option<u32>,
     /// Seed of the random numbers: the same seed gives the same picture [default: the scene's].
-    #[arg(long, value_name = "N", allow_negative_numbers = true, help_heading = "Quality")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = seed, help_heading = "Quality")]
     pub seed: Option<u32>,
     #[command(flatten)]
     pub estimator: EstimatorOptions,

@@ -13,8 +13,8 @@ const PRESET_TABLE: &str = "\
 Which estimator computes the radiance, in place of all that the scene says about it [default: the scene's]:
 
   simple              the simple ray tracer: emission, direct light, and an ambient term in place of indirect light
-  default             everything below at its best: light is sampled and also found by chance (multiple importance
-                      sampling), near lamps by solid angle, directions by the BSDF, Russian roulette
+  default             what has the least noise in most scenes: light is sampled and also found by chance (multiple
+                      importance sampling), near lamps by solid angle, directions by the BSDF, Russian roulette
   no-light-sampling   light is only found where a path happens to meet it (Kajiya); cosine-distributed directions
   uniform             direct light is sampled by area; directions evenly over the hemisphere
   cosine              the same with cosine-distributed directions, the survivors of extinction re-weighted

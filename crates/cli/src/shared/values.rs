@@ -7,8 +7,23 @@ pub fn seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         // A clock's time plus more than about a thousand years may overflow.
         Ok(seconds) if seconds > 0.0 && seconds < 3.2e10 => Ok(seconds),
-        _ => Err("expected a number of seconds above 0, for example 30 or 0.5".into()),
+        _ => Err(match in_seconds(text) {
+            Some(seconds) => format!("seconds are written alone: {seconds}"),
+            None => "expected a number of seconds above 0, for example 30 or 0.5".into(),
+        }),
     }
+}
+
+/// Seconds that are written with a unit: `90s`, `5m`, `5min`, `2h`.
+fn in_seconds(text: &str) -> Option<f64> {
+    let number = text.trim_end_matches(char::is_alphabetic);
+    let factor = match text[number.len()..].to_lowercase().as_str() {
+        "s" | "sec" => 1.0,
+        "m" | "min" => 60.0,
+        "h" => 3600.0,
+        _ => return None,
+    };
+    number.trim().parse::<f64>().ok().filter(|number| *number > 0.0).map(|number| number * factor)
 }
 
 /// A relative error above 0, and no more than 1: nobody wants 200 %, but many mean 2 %.
@@ -58,8 +73,19 @@ pub fn stops(text: &str) -> Result<f32, String> {
 
 /// Numbers of samples, as `A..B`.
 pub fn range(text: &str) -> Result<Range<u32>, String> {
-    let range = text.split_once("..").and_then(|(a, b)| Some(a.trim().parse().ok()?..b.trim().parse().ok()?));
-    range.filter(|range: &Range<u32>| range.start < range.end).ok_or_else(|| {
-        "expected the numbers of the first sample and of the one after the last, for example 0..64 or 64..128".into()
-    })
+    let pair = |between: &str| {
+        let (a, b) = text.split_once(between)?;
+        Some(a.trim().parse().ok()?..b.trim().parse().ok()?).filter(|range: &Range<u32>| range.start < range.end)
+    };
+    if let Some(range) = pair("..") {
+        return Ok(range);
+    }
+    let advice = match ["-", ":", ","].into_iter().find_map(pair) {
+        Some(Range { start, end }) => format!("; say {start}..{end}"),
+        None if text.parse::<u32>().is_ok() => format!("; for {text} samples of every pixel say --spp {text}"),
+        None => String::new(),
+    };
+    Err(format!(
+        "expected the numbers of the first sample and of the one after the last, for example 0..64 or 64..128{advice}"
+    ))
 }

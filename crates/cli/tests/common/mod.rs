@@ -1,6 +1,8 @@
 //! A folder with a small scene in which a test runs the program.
 #![allow(dead_code)] // Each test binary uses a part of it.
 
+pub mod running;
+
 use std::path::Path;
 use std::process::{Command, Output};
 
@@ -35,11 +37,16 @@ impl Folder {
 
     /// The names of all files, sorted.
     pub fn names(&self) -> Vec<String> {
-        let entries = std::fs::read_dir(self.path()).unwrap();
-        let mut names: Vec<String> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
-        names.sort();
-        names
+        names(self.path())
     }
+}
+
+/// The names of all files in a folder, sorted.
+pub fn names(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).unwrap();
+    let mut names: Vec<String> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
 }
 
 /// What a run wrote to stderr.

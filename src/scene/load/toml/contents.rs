@@ -1,10 +1,12 @@
 //! The tables `[[luminaire]]`, `[[material]]` and `[[object]]` of a scene file.
 
 use super::file::File;
+use super::radians;
 use super::tables::{LuminaireEntry, LuminaireKind, MapEntry, MaterialTable, ObjectTable, PlacedMap, Scale};
-use super::values::Triple;
+use super::values::{Matrix, Triple};
 use crate::scene::load::loader::Loader;
 use crate::scene::load::material_draft::{Draft, DraftMaps, MapDraft};
+use crate::scene::load::near_name::instead_of;
 use crate::scene::load::obj;
 use crate::scene::load::other_formats;
 use crate::scene::load::text_file::{line_and_column, shortened};
@@ -84,7 +86,8 @@ impl File<'_> {
         }
         let path = self.beside(name);
         // What is wrong with the image itself is a warning, as it is in an MTL file.
-        std::fs::metadata(&path).map_err(|error| self.error(entry.span(), Error::read(&path, error).to_string()))?;
+        std::fs::metadata(&path)
+            .map_err(|error| self.error(entry.span(), Error::read(&path, error).to_string() + &instead_of(&path)))?;
         let at = format!("{}:{}", self.path.display(), line_and_column(self.text, entry.span().start).0);
         let plain = MapFile::plain(vec![name.clone()], self.folder(), at);
         let scale = scale.map_or(plain.scale, |scale| scale.0);
@@ -96,6 +99,10 @@ impl File<'_> {
     pub(super) fn object(&self, table: &Spanned<ObjectTable>, loader: &mut Loader) -> Result<(Object, DAffine3)> {
         let object = table.get_ref();
         let to_world = self.transform(table)?;
+        if let Some(warning) = object.rotate.and_then(|rotate| radians::rotation(rotate.rounded())) {
+            let (line, _) = line_and_column(self.text, table.span().start);
+            loader.warnings.push(format!("{}:{line}: {warning}", self.path.display()));
+        }
         let mesh_path = self.beside(object.mesh.get_ref());
         if !mesh_path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("obj")) {
             let what = other_formats::named(&mesh_path).map(|what| format!(" ({what})")).unwrap_or_default();
@@ -108,7 +115,7 @@ impl File<'_> {
         };
         let mesh = loader.mesh(&mesh_path, how).map_err(|error| match error {
             // Where the file is named helps more than where it is not.
-            Error::Read { .. } => self.error(object.mesh.span(), error.to_string()),
+            Error::Read { .. } => self.error(object.mesh.span(), error.to_string() + &instead_of(&mesh_path)),
             other => other,
         })?;
         let material = match &object.material {
@@ -134,7 +141,7 @@ impl File<'_> {
         }
         let zero = Triple(DVec3::ZERO);
         let to_world = match matrix {
-            Some(rows) => {
+            Some(Matrix(rows)) => {
                 let column = |c: usize| DVec3::new(rows[0][c].0, rows[1][c].0, rows[2][c].0);
                 let rounded = |c: usize| column(c).as_vec3().as_dvec3();
                 DAffine3 { matrix3: DMat3::from_cols(rounded(0), rounded(1), rounded(2)), translation: column(3) }

@@ -1,7 +1,10 @@
 //! Scene files in TOML; `scenes/README.md` describes the format.
 
+mod advice;
 mod contents;
 mod file;
+mod foreign_words;
+mod radians;
 mod settings;
 mod tables;
 mod values;
@@ -11,6 +14,7 @@ use super::loader::Loader;
 use super::text_file::read_bytes;
 use crate::scene::{Projection, RenderSettings, Scene, Sensor};
 use crate::{Error, Result};
+use advice::{in_plain_words, wrong_brackets};
 use file::File;
 use glam::{DVec3, Vec3};
 use std::path::Path;
@@ -24,8 +28,13 @@ pub(super) fn load(path: &Path) -> Result<Scene> {
         Error::Parse { path: path.to_owned(), line, column: 0, message: "a scene file has to be UTF-8 text".into() }
     })?;
     let file = File { path, text };
-    let scene: SceneFile = ::toml::from_str(text)
-        .map_err(|error| file.error(error.span().unwrap_or(0..0), in_plain_words(error.message().trim())))?;
+    if let Some((span, message)) = wrong_brackets(text) {
+        return Err(file.error(span, message));
+    }
+    let scene: SceneFile = ::toml::from_str(text).map_err(|error| {
+        let span = error.span().unwrap_or(0..0);
+        file.error(span.clone(), in_plain_words(error.message().trim(), text, span))
+    })?;
     file.build(scene)
 }
 
@@ -35,8 +44,11 @@ impl File<'_> {
         let integrator = self.integrator(&file.integrator)?;
         // What is wrong in this file is said before any other file is read; where the origin is, only those know.
         let near = file.sensor.as_ref().map_or(DVec3::ZERO, |table| far_origin(table.get_ref().position.0));
-        if let Some(table) = &file.sensor {
-            self.sensor(table, near)?;
+        let mut fov = None;
+        if let Some(table) = &file.sensor
+            && let Projection::Perspective { fov: degrees } = self.sensor(table, near)?.projection
+        {
+            fov = Some(degrees);
         }
         for table in &file.luminaire {
             self.luminaire(table, near)?;
@@ -45,6 +57,9 @@ impl File<'_> {
         loader.files.push(self.path.to_owned());
         if let Some(image) = file.environment.as_ref().and_then(|table| table.get_ref().image.as_ref()) {
             loader.files.extend(Some(self.beside(image.get_ref())).filter(|path| path.is_file()));
+        }
+        if let Some(warning) = fov.and_then(radians::field_of_view) {
+            loader.warnings.push(self.warning(&warning));
         }
         let environment = match &file.environment {
             None => None,
@@ -106,18 +121,4 @@ impl File<'_> {
 /// Where the checks of a sensor at `position` take the origin to be, before it is known: at the sensor, if that is far away.
 fn far_origin(position: DVec3) -> DVec3 {
     if position.abs().max_element() > 1e4 { position } else { DVec3::ZERO }
-}
-
-/// The parser's words for types, as TOML users know them.
-fn in_plain_words(message: &str) -> String {
-    let words = [
-        ("invalid type: map, expected a sequence", "one table, expected a list of them: write [[ ]] around its name"),
-        ("invalid type: map, expected", "a table (or a list of tables), expected"),
-        ("expected f64", "expected a number"),
-        ("expected f32", "expected a number"),
-        ("expected i64", "expected a whole number"),
-        ("expected u32", "expected a whole number from 0 to 4294967295"),
-        ("expected an array of length 3", "expected three numbers"),
-    ];
-    words.iter().fold(message.to_owned(), |text, (from, to)| text.replace(from, to))
 }

@@ -1,8 +1,10 @@
 //! The tables `[film]`, `[sensor]`, `[environment]` and `[integrator]` of a scene file.
 
+use super::advice::name_hint;
 use super::file::File;
 use super::tables::{EnvironmentTable, FilmTable, IntegratorKind, IntegratorTable, SensorKind, SensorTable};
 use super::values::Triple;
+use crate::scene::load::near_name::instead_of;
 use crate::scene::load::{bare_mesh, environment};
 use crate::scene::{Environment, Estimator, EstimatorChanges, FilmSettings, Integrator, Lens, Projection, Sensor};
 use crate::{Error, Result};
@@ -41,7 +43,10 @@ impl File<'_> {
                 return Err(self.error(fov.span(), message));
             }
             (SensorKind::Perspective, None, None) => {
-                return Err(self.error(table.span(), "missing field `fov`: the vertical field of view in degrees"));
+                return Err(self.error(
+                    table.span(),
+                    "missing field `fov`: the vertical field of view in degrees, for example 45",
+                ));
             }
             (SensorKind::Orthographic, None, None) => {
                 let message = "missing field `height`: how much of the scene the picture shows, from bottom to top";
@@ -126,7 +131,9 @@ impl File<'_> {
             Some(name) => {
                 let path = self.beside(name.get_ref());
                 let read = environment::read(&path, warnings);
-                match read.map_err(|reason| self.error(name.span(), Error::read(&path, reason).to_string()))? {
+                match read.map_err(|reason| {
+                    self.error(name.span(), Error::read(&path, reason).to_string() + &instead_of(&path))
+                })? {
                     None => return Ok(None),
                     image => image,
                 }
@@ -163,7 +170,10 @@ impl File<'_> {
             None => Estimator::default(),
             Some(name) => Estimator::preset(name.get_ref()).ok_or_else(|| {
                 let expected = Estimator::names_in_words();
-                self.error(name.span(), format!("no estimator is called `{}`, expected {expected}", name.get_ref()))
+                let names = expected.split('`').skip(1).step_by(2).map(str::to_owned).collect::<Vec<_>>();
+                let hint = name_hint(name.get_ref(), &names).map(|hint| format!("; {hint}")).unwrap_or_default();
+                let message = format!("no estimator is called `{}`, expected {expected}{hint}", name.get_ref());
+                self.error(name.span(), message)
             })?,
         };
         let estimator = EstimatorChanges {

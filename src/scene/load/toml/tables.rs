@@ -1,7 +1,7 @@
 //! The tables of a scene file, as `scenes/README.md` describes them.
 
 use super::values::{
-    Angle, Blades, Bounces, Colour, Eta, Exact, Exponent, Exposure, FilterRadius, Finite, Fov, MapOffset, MapScale,
+    Angle, Blades, Bounces, Colour, Eta, Exponent, Exposure, FilterRadius, Finite, Fov, MapOffset, MapScale, Matrix,
     NotNegative, Pixels, Positive, Probability, Samples, Triple, Unit,
 };
 use crate::scene::{AreaSampling, Directions, Extinction, Filter, LightSampling, Sampler};
@@ -109,7 +109,7 @@ pub(super) struct ObjectTable {
     pub translate: Option<Triple>,
     pub rotate: Option<Triple>,
     pub scale: Option<Scale>,
-    pub matrix: Option<[[Exact; 4]; 3]>,
+    pub matrix: Option<Matrix>,
 }
 
 #[derive(Deserialize)]

@@ -4,7 +4,8 @@ use crate::scene::Estimator;
 use crate::scene::load::material_draft::{ETAS, LARGEST_EXPONENT};
 use crate::scene::load::texture::LARGEST_TRANSFORM;
 use glam::{DVec2, DVec3, Vec2, Vec3};
-use serde::Deserialize;
+use serde::de::{SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer};
 
 /// Most pixels in a row or a column.
 const LARGEST_FILM: i64 = 65_536;
@@ -18,6 +19,62 @@ const MOST_BLADES: i64 = 64;
 
 type Checked<T> = std::result::Result<T, &'static str>;
 
+/// A list of numbers, no more and no fewer: the parser itself would take the first `N` of a longer one.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Numbers<const N: usize>(pub [f64; N]);
+
+impl<'de, const N: usize> Deserialize<'de> for Numbers<N> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+        struct Elements<const N: usize>;
+        impl<'de, const N: usize> Visitor<'de> for Elements<N> {
+            type Value = Numbers<N>;
+            fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+                f.write_str(if N == 3 {
+                    "three numbers [x, y, z]"
+                } else {
+                    "rows of four numbers: [[1, 0, 0, 5], [0, 1, 0, 0], [0, 0, 1, 0]]"
+                })
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> std::result::Result<Numbers<N>, A::Error> {
+                let mut numbers = Vec::new();
+                while let Some(number) = list.next_element()? {
+                    numbers.push(number);
+                }
+                let count = numbers.len();
+                numbers.try_into().map(Numbers).map_err(|_| {
+                    let advice = if (N, count) == (3, 4) { "; a fourth, as alpha, has no place here" } else { "" };
+                    let many = if N == 3 { "three" } else { "four" };
+                    serde::de::Error::custom(format!("expected {many} numbers, found {count}{advice}"))
+                })
+            }
+        }
+        deserializer.deserialize_seq(Elements)
+    }
+}
+
+/// Three rows of four numbers, or four of which the last is 0, 0, 0, 1.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(try_from = "Vec<Numbers<4>>")]
+pub(super) struct Matrix(pub [[Exact; 4]; 3]);
+
+impl TryFrom<Vec<Numbers<4>>> for Matrix {
+    type Error = &'static str;
+    fn try_from(mut rows: Vec<Numbers<4>>) -> Checked<Self> {
+        if rows.len() == 4 && rows[3].0 == [0.0, 0.0, 0.0, 1.0] {
+            rows.pop();
+        }
+        let rows: [Numbers<4>; 3] =
+            rows.try_into().map_err(|_| "expected three rows of four numbers; a fourth can only be [0, 0, 0, 1]")?;
+        let mut matrix = [[Exact(0.0); 4]; 3];
+        for (row, numbers) in matrix.iter_mut().zip(rows) {
+            for (number, from) in row.iter_mut().zip(numbers.0) {
+                *number = Exact::try_from(from)?;
+            }
+        }
+        Ok(Matrix(matrix))
+    }
+}
+
 /// A finite number.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(try_from = "f64")]
@@ -30,7 +87,7 @@ pub(super) struct Exact(pub f64);
 
 /// A point or a vector, as the file has it: a point may lie so far from the origin that every digit counts.
 #[derive(Debug, Clone, Copy, Deserialize)]
-#[serde(try_from = "[f64; 3]")]
+#[serde(try_from = "Numbers<3>")]
 pub(super) struct Triple(pub DVec3);
 
 impl Triple {
@@ -42,7 +99,7 @@ impl Triple {
 
 /// Linear RGB, not negative.
 #[derive(Debug, Clone, Copy, Deserialize)]
-#[serde(try_from = "[f64; 3]")]
+#[serde(try_from = "Numbers<3>")]
 pub(super) struct Colour(pub Vec3);
 
 /// A field of view in degrees.
@@ -139,17 +196,17 @@ impl TryFrom<f64> for Exact {
     }
 }
 
-impl TryFrom<[f64; 3]> for Triple {
+impl TryFrom<Numbers<3>> for Triple {
     type Error = &'static str;
-    fn try_from(numbers: [f64; 3]) -> Checked<Self> {
+    fn try_from(Numbers(numbers): Numbers<3>) -> Checked<Self> {
         let vector = DVec3::from(numbers);
         Some(vector).filter(|v| v.as_vec3().is_finite()).map(Triple).ok_or("expected three finite numbers below 3e38")
     }
 }
 
-impl TryFrom<[f64; 3]> for Colour {
+impl TryFrom<Numbers<3>> for Colour {
     type Error = &'static str;
-    fn try_from(numbers: [f64; 3]) -> Checked<Self> {
+    fn try_from(Numbers(numbers): Numbers<3>) -> Checked<Self> {
         let colour = DVec3::from(numbers).as_vec3();
         Some(colour)
             .filter(|c| c.is_finite() && c.min_element() >= 0.0)

@@ -1,0 +1,234 @@
+//! What is meant instead of a command line that cannot be read, added to what clap says about it.
+
+use crate::Args;
+use clap::CommandFactory;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use std::path::Path;
+
+/// Options that others have, without their dashes, and what stands for them here.
+const OPTIONS: &[(&[&str], &str)] = &[
+    (&["resolution", "size", "res", "dimensions", "x", "y"], "the size is --width 1920 --height 1080"),
+    (&["samples-per-pixel", "sample-count", "num-samples", "pixelsamples", "s"], "samples a pixel are --spp 64"),
+    (
+        &["threads", "cores", "j", "t", "nthreads"],
+        "all cores are used; the variable RAYON_NUM_THREADS limits --backend cpu, and LP_NUM_THREADS Mesa's lavapipe",
+    ),
+    (&["cpu"], "that is --backend cpu"),
+    (
+        &["gpu", "cuda", "vulkan", "optix", "hip", "metal", "rtx", "use-gpu"],
+        "a GPU is taken by itself (`luminaire devices` shows it); --device chooses another, --backend how rays are traced",
+    ),
+    (&["list-devices", "device-list", "gpus"], "that is `luminaire devices`"),
+    (&["integrator", "method", "mode", "variant", "m"], "the choices are --estimator, and --backend for what traces"),
+    (&["depth", "max-depth", "bounces", "maxdepth", "ray-depth"], "the limit of indirect bounces is --max-bounces N"),
+    (
+        &["gamma", "tonemap", "tone-map", "brightness", "ev"],
+        "brightness is --exposure STOPS; a PNG is sRGB without a curve of its own",
+    ),
+    (&["format", "f", "file-format", "type"], "the ending of -o says the format: -o picture.png, .exr or .hdr"),
+    (&["out", "file", "outfile", "output-file", "save", "image"], "the picture is named with -o FILE.png"),
+    (&["output-dir", "outdir", "folder", "dir"], "-o FOLDER/FILE.png names the folder, too"),
+    (
+        &["camera", "fov", "lookat", "look-at", "eye", "position", "target", "view"],
+        "the camera is the table [sensor] of the scene file; `luminaire view` writes it with the key C",
+    ),
+    (
+        &["env", "environment", "envmap", "background", "hdri", "sky", "light", "lights"],
+        "light is in the scene file: [environment], [[luminaire]], or a material with `emission`",
+    ),
+    (&["scene", "input", "i", "load"], "the scene stands alone, without an option before it: luminaire render SCENE"),
+    (
+        &["verbose", "v", "debug", "log", "log-level"],
+        "--stats FILE.json has the figures of a run, and `luminaire inspect SCENE` what was loaded",
+    ),
+    (&["force", "overwrite", "yes"], "pictures are replaced anyway; leave it out"),
+    (&["quality", "preset"], "quality is --spp N, or --noise 0.02 for an error of 2 %"),
+    (&["timeout", "max-time", "time-limit", "seconds", "duration"], "that is --time SECONDS"),
+    (
+        &["noise-threshold", "adaptive", "max-error", "target-noise", "error", "threshold"],
+        "that is --noise, for example --noise 0.02 for 2 %",
+    ),
+    (
+        &["frame", "frames", "animation", "a", "start", "end"],
+        "a scene is one picture; an animation is a scene file for each of its pictures",
+    ),
+    (&["crop", "region", "border", "window"], "the whole film is rendered; a part of the samples is --samples A..B"),
+    (
+        &["aovs", "passes", "layers", "albedo", "normals", "depth-map"],
+        "layers for denoisers and compositing are --aov, in an EXR file",
+    ),
+    (&["continue", "restart", "go-on"], "a render goes on with --checkpoint FILE.exr --resume"),
+    (&["benchmark"], "that is `luminaire bench`"),
+    (&["help-all", "usage"], "that is --help"),
+    #[cfg(not(feature = "shaderc"))]
+    (&["watch"], "--watch is in a program that compiles shaders: cargo build --release --features shaderc"),
+    #[cfg(not(feature = "denoise"))]
+    (
+        &["denoised", "denoise", "denoiser", "oidn"],
+        "--denoised FILE is in a program that is built with Open Image Denoise: cargo build --release --features denoise; --aov writes what other denoisers want",
+    ),
+    #[cfg(feature = "denoise")]
+    (&["denoise", "denoiser", "oidn"], "that is --denoised FILE"),
+];
+
+/// Names that --backend cannot have, and what is meant.
+const BACKENDS: &[(&[&str], &str)] = &[
+    (
+        &["vulkan", "gpu", "device"],
+        "auto takes the best Vulkan device (`luminaire devices` shows them); --device chooses another",
+    ),
+    (
+        &["cuda", "optix", "hip", "oneapi", "metal", "opencl", "dx12", "directx", "nvidia", "amd", "intel"],
+        "GPUs are used through Vulkan, whoever makes them: auto, or --device for a certain one",
+    ),
+    (&["rtx", "rt", "rayquery", "ray_query", "hardware", "rt-cores"], "ray queries are ray-query"),
+    (
+        &["bvh", "compute", "computebvh", "compute_bvh", "software", "lavapipe", "llvmpipe"],
+        "our own BVH, which every Vulkan device runs, is compute-bvh",
+    ),
+    (&["reference", "embree", "llvm", "scalar", "scalar_rgb", "llvm_ad_rgb", "host", "x86"], "the CPU is cpu"),
+];
+
+/// What clap says about a command line, with its guesses replaced by what is meant where that is known. `words` is the command line.
+pub fn with_advice(error: clap::Error, words: &[String]) -> clap::Error {
+    let Some(advice) = advice(&error, words) else { return error };
+    let mut advised = clap::Error::new(error.kind()).with_cmd(&command_of(words));
+    let guesses = [
+        ContextKind::SuggestedArg,
+        ContextKind::SuggestedSubcommand,
+        ContextKind::SuggestedValue,
+        ContextKind::Suggested,
+    ];
+    for (kind, value) in error.context().filter(|(kind, _)| !guesses.contains(kind)) {
+        advised.insert(kind, value.clone());
+    }
+    advised.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![advice.into()]));
+    advised
+}
+
+/// The subcommand of a command line, or the whole program.
+fn command_of(words: &[String]) -> clap::Command {
+    let mut program = Args::command();
+    program.build();
+    let name = words.get(1).map_or("", String::as_str);
+    program.find_subcommand(name).cloned().unwrap_or(program)
+}
+
+fn advice(error: &clap::Error, words: &[String]) -> Option<String> {
+    let text = |kind| match error.get(kind) {
+        Some(ContextValue::String(text)) => Some(text.as_str()),
+        _ => None,
+    };
+    match error.kind() {
+        ErrorKind::InvalidSubcommand => subcommand(text(ContextKind::InvalidSubcommand)?),
+        ErrorKind::UnknownArgument => {
+            // With its value, where it has one behind an equals sign.
+            let word = text(ContextKind::InvalidArg)?.split_whitespace().next()?;
+            argument(word, words)
+        }
+        ErrorKind::InvalidValue if text(ContextKind::InvalidArg)?.starts_with("--backend") => {
+            let name = text(ContextKind::InvalidValue)?.to_lowercase();
+            let known = ["auto", "ray-query", "compute-bvh", "cpu"].into_iter().find(|known| *known == name);
+            known.map(|known| format!("names are written in small letters: {known}")).or_else(|| row(BACKENDS, &name))
+        }
+        _ => None,
+    }
+}
+
+fn row(rows: &[(&[&str], &str)], word: &str) -> Option<String> {
+    rows.iter().find(|(words, _)| words.contains(&word)).map(|(_, advice)| (*advice).to_owned())
+}
+
+/// Whether a word names a scene, or a picture, by its ending.
+fn ends_with(word: &str, endings: &[&str]) -> bool {
+    let ending = Path::new(word).extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    ending.is_some_and(|ending| endings.contains(&&*ending))
+}
+
+fn is_scene(word: &str) -> bool {
+    ends_with(word, &["toml", "obj"])
+}
+
+fn is_picture(word: &str) -> bool {
+    ends_with(word, &["png", "exr", "hdr", "jpg", "jpeg", "tif", "tiff", "bmp", "webp"])
+}
+
+/// What a word in the place of a subcommand means.
+fn subcommand(word: &str) -> Option<String> {
+    if is_scene(word) || Path::new(word).exists() {
+        return Some(format!("to render a scene: luminaire render {word}"));
+    }
+    let row: Option<&str> = match word.to_lowercase().as_str() {
+        "show" | "gui" | "open" | "display" | "window" | "preview" => Some("luminaire view SCENE"),
+        "diff" | "cmp" | "difference" | "metrics" => Some("luminaire compare IMAGE REFERENCE"),
+        "info" | "check" | "validate" | "stats" | "list" => Some("luminaire inspect SCENE"),
+        "gpus" | "device" | "adapters" => Some("luminaire devices"),
+        "join" | "combine" | "concat" => Some("luminaire merge PART... -o FILE.exr"),
+        "benchmark" | "perf" => Some("luminaire bench"),
+        "run" | "trace" | "start" | "rendering" => Some("luminaire render SCENE"),
+        _ => None,
+    };
+    row.map(|line| format!("that is `{line}`"))
+}
+
+/// What an option or a word that has no place means.
+fn argument(word: &str, words: &[String]) -> Option<String> {
+    let name = word.trim_start_matches('-');
+    let dashes = word.len() - name.len();
+    let name = name.split_once('=').map_or(name, |(name, _)| name);
+    let program = Args::command();
+    let here = words.get(1).map_or("", String::as_str);
+    let at_top = program.find_subcommand(here).is_none();
+    let has = |command: &clap::Command, name: &str| command.get_arguments().any(|arg| arg.get_long() == Some(name));
+    // `-spp 4` is read as the options s, p and p.
+    if dashes == 1
+        && let Some(long) = words.iter().filter(|word| !word.starts_with("--")).find_map(|word| {
+            let long = word.strip_prefix('-')?;
+            let long = long.split_once('=').map_or(long, |(name, _)| name);
+            (long.len() > 1 && program.get_subcommands().any(|command| has(command, long))).then_some(long)
+        })
+    {
+        return Some(format!("an option of more than one letter has two dashes: --{long}"));
+    }
+    if dashes == 0 {
+        if is_picture(word)
+            || words.iter().skip(2).any(|other| other == word) && is_scene(word) && first_is_picture(words)
+        {
+            let scene = words.iter().skip(2).find(|word| is_scene(word)).map_or("SCENE", String::as_str);
+            let picture = words.iter().skip(2).find(|word| is_picture(word)).map_or("PICTURE", String::as_str);
+            return Some(format!(
+                "the scene comes first, and the picture behind -o: luminaire render {scene} -o {picture}"
+            ));
+        }
+        if is_scene(word) {
+            return Some(format!("one scene a run; then the other: luminaire {here} {word}"));
+        }
+        let command = program.find_subcommand(here)?;
+        let long = name.to_lowercase();
+        return has(command, &long).then(|| format!("an option has two dashes: --{}", word.replacen('=', " ", 1)));
+    }
+    if at_top && program.find_subcommand(name).is_some() {
+        return Some(format!("a subcommand has no dashes: luminaire {name}"));
+    }
+    if at_top {
+        let owner = program.get_subcommands().find(|command| {
+            has(command, name)
+                || command
+                    .get_arguments()
+                    .any(|arg| dashes == 1 && arg.get_short().map(String::from).as_deref() == Some(name))
+        });
+        if let Some(owner) = owner {
+            return Some(format!("the subcommand comes first: luminaire {} SCENE {word} ...", owner.get_name()));
+        }
+    }
+    let plain = name.to_lowercase().replace('_', "-");
+    if plain != name && program.find_subcommand(here).is_some_and(|command| has(command, &plain)) {
+        return Some(format!("it is written --{plain}"));
+    }
+    row(OPTIONS, &plain)
+}
+
+/// Whether the first word behind the subcommand that is no option is a picture.
+fn first_is_picture(words: &[String]) -> bool {
+    words.iter().skip(2).find(|word| !word.starts_with('-')).is_some_and(|word| is_picture(word))
+}
