@@ -1,6 +1,5 @@
 //! What is wrong with the numbers of a texture: not finite, negative, or beyond what is kept of them.
 
-use super::texture::{Channel, MapFile};
 use crate::picture::decode::{CHUNK, ImageFile};
 use half::f16;
 use rayon::prelude::*;
@@ -17,27 +16,15 @@ struct Faults {
     opacity: usize,
 }
 
-/// What is changed in a texture, in words that can follow the file's name. Whole numbers that are sRGB can have none of these faults.
-pub(super) fn of(image: &ImageFile, map: &MapFile, scalar: Option<Channel>) -> Vec<String> {
-    if !image.is_unbounded() || scalar.is_some() && !image.is_float() {
+/// What is changed in colours that are kept as half floats, in words that can follow the file's name; `range` makes of each number what counts. Whole
+/// numbers that are sRGB can have no fault.
+pub(super) fn of_colours(image: &ImageFile, straight: bool, range: impl Fn(f32) -> f32 + Send + Sync) -> Vec<String> {
+    if !image.is_unbounded() {
         return Vec::new();
     }
-    let by_alpha = matches!(scalar, Some(Channel::One(3))) || scalar == Some(Channel::Any) && image.has_transparency();
-    let range = |value: f32| map.base + map.gain * value;
-    // A little beyond 1 is what filters leave.
-    let is_opacity = |value: f32| (-0.01..=1.01).contains(&value);
-    let of_one = |texel: usize| -> Faults {
-        if let Some(channel) = scalar {
-            let stored = image.stored(texel);
-            let value = match channel {
-                _ if by_alpha => stored[3],
-                Channel::One(index) => stored[usize::from(index)],
-                Channel::Any | Channel::Luminance => luminance(stored),
-            };
-            return Faults { opacity: usize::from(!is_opacity(range(value))), ..Faults::default() };
-        }
-        let [r, g, b, alpha] = if map.straight { image.straight(texel) } else { image.linear(texel) };
-        let colour = [r, g, b].map(range);
+    let faults = |texel: usize| {
+        let [r, g, b, alpha] = if straight { image.straight(texel) } else { image.linear(texel) };
+        let colour = [r, g, b].map(&range);
         let largest = colour.into_iter().fold(0.0, f32::max);
         let rounding = image.rounding() * largest;
         Faults {
@@ -45,20 +32,37 @@ pub(super) fn of(image: &ImageFile, map: &MapFile, scalar: Option<Channel>) -> V
             negative: usize::from(colour.iter().any(|value| *value < -rounding)),
             large: usize::from(largest > f16::MAX.to_f32()),
             largest,
-            opacity: usize::from(map.straight && !is_opacity(alpha)),
+            opacity: usize::from(straight && !is_opacity(alpha)),
         }
     };
-    let sum = (0..image.len()).into_par_iter().with_min_len(CHUNK).map(of_one).reduce(Faults::default, |a, b| Faults {
-        nan: a.nan + b.nan,
-        negative: a.negative + b.negative,
-        large: a.large + b.large,
-        largest: a.largest.max(b.largest),
-        opacity: a.opacity + b.opacity,
-    });
-    sum.in_words(image)
+    Faults::sum(image, faults).in_words(image)
+}
+
+/// The same for opacities.
+pub(super) fn of_opacities(image: &ImageFile, opacity: impl Fn(usize) -> f32 + Send + Sync) -> Vec<String> {
+    if !image.is_float() {
+        return Vec::new();
+    }
+    let faults = |texel| Faults { opacity: usize::from(!is_opacity(opacity(texel))), ..Faults::default() };
+    Faults::sum(image, faults).in_words(image)
+}
+
+/// A little beyond 1 is what filters leave.
+fn is_opacity(value: f32) -> bool {
+    (-0.01..=1.01).contains(&value)
 }
 
 impl Faults {
+    fn sum(image: &ImageFile, of_one: impl Fn(usize) -> Faults + Send + Sync) -> Self {
+        (0..image.len()).into_par_iter().with_min_len(CHUNK).map(of_one).reduce(Faults::default, |a, b| Faults {
+            nan: a.nan + b.nan,
+            negative: a.negative + b.negative,
+            large: a.large + b.large,
+            largest: a.largest.max(b.largest),
+            opacity: a.opacity + b.opacity,
+        })
+    }
+
     fn in_words(&self, image: &ImageFile) -> Vec<String> {
         let all = image.len();
         let mut said = Vec::new();
@@ -84,9 +88,4 @@ impl Faults {
         }
         said
     }
-}
-
-/// The luminance of linear sRGB primaries (ITU-R BT.709); the weights' sum is 1 even in single precision, so white is 1.
-pub(super) fn luminance([r, g, b, _]: [f32; 4]) -> f32 {
-    (f64::from(r) * 0.2126 + f64::from(g) * 0.7152 + f64::from(b) * 0.0722) as f32
 }

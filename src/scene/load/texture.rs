@@ -1,6 +1,6 @@
 //! Textures: which file a map means, what its options change, and the texels that both tracers see.
 
-use super::texel_faults::{self, luminance};
+use super::texel_faults;
 use crate::picture::decode::{CHUNK, ImageFile};
 use crate::scene::Texture;
 use glam::{Affine2, Vec2, Vec3};
@@ -259,8 +259,8 @@ impl Textures {
         let texture = match ImageFile::open(&path, MOST_TEXELS - self.texels, too_many) {
             Ok(image) => {
                 self.texels += image.len() as u64;
-                let texels = texels(&image, map, scalar);
-                for fault in image.warnings.iter().cloned().chain(texel_faults::of(&image, map, scalar)) {
+                let (texels, faults) = texels(&image, map, scalar);
+                for fault in image.warnings.iter().cloned().chain(faults) {
                     if self.said.insert(format!("{} {fault}", path.display())) {
                         warnings.push(format!("{}: the texture {}: {fault}", map.at, path.display()));
                     }
@@ -293,27 +293,36 @@ impl Textures {
     }
 }
 
-/// The texels as the tracers see them: options applied, finite, not negative, within half precision.
-fn texels(image: &ImageFile, map: &MapFile, scalar: Option<Channel>) -> Vec<[f16; 4]> {
+/// The texels as the tracers see them: options applied, finite, not negative, within half precision; and what was changed for that, in words.
+fn texels(image: &ImageFile, map: &MapFile, scalar: Option<Channel>) -> (Vec<[f16; 4]>, Vec<String>) {
     let scalar = match scalar {
         Some(Channel::Any) if image.has_transparency() => Some(Channel::One(3)),
         other => other,
     };
     let range = |value: f32| map.base + map.gain * value;
     match scalar {
-        None => image.decode(map.straight, |value| half(range(value)), opacity),
+        None => (
+            image.decode(map.straight, |value| half(range(value)), opacity),
+            texel_faults::of_colours(image, map.straight, range),
+        ),
         Some(channel) => {
-            let scalar = |texel| {
+            let value = |texel| {
                 let stored = image.stored(texel);
-                let value = match channel {
+                range(match channel {
                     Channel::One(index) => stored[usize::from(index)],
                     Channel::Any | Channel::Luminance => luminance(stored),
-                };
-                [f16::ONE, f16::ONE, f16::ONE, opacity(range(value))]
+                })
             };
-            (0..image.len()).into_par_iter().with_min_len(CHUNK).map(scalar).collect()
+            let scalar = |texel| [f16::ONE, f16::ONE, f16::ONE, opacity(value(texel))];
+            let texels = (0..image.len()).into_par_iter().with_min_len(CHUNK).map(scalar).collect();
+            (texels, texel_faults::of_opacities(image, value))
         }
     }
+}
+
+/// The luminance of linear sRGB primaries (ITU-R BT.709); the weights' sum is 1 even in single precision, so white is 1.
+fn luminance([r, g, b, _]: [f32; 4]) -> f32 {
+    (f64::from(r) * 0.2126 + f64::from(g) * 0.7152 + f64::from(b) * 0.0722) as f32
 }
 
 /// NaN and what is negative become 0.
