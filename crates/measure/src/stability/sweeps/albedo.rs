@@ -273,12 +273,11 @@ fn findings(all: &[(Backend, Vec<Vec<Measured>>)], beyond: &[Measured]) -> Findi
              ends after {LONGEST_PATH} bounces, even in a room that absorbs nothing. Limits and thresholds are off unless asked for.",
             rays(0),
         ),
-        sees: format!(
-            "With the default noise and time that grow with 1 / (1 - albedo) and a right picture. With a limit of bounces or the \
+        sees: "With the default noise and time that grow with 1 / (1 - albedo) and a right picture. With a limit of bounces or the \
              literal extinction a \
              picture that is too dark and looks converged. Above albedo 0.9997 a warning that counts the lost samples, and too little light; real \
              matter stays below 0.99."
-        ),
+            .into(),
     }
 }
 
