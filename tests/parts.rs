@@ -6,12 +6,13 @@ use luminaire::part::{self, Provenance};
 use luminaire::render::{End, Limits, Rendered};
 use luminaire::scene::build::{add, empty, lamp, quad};
 use luminaire::{Error, Film, Scene};
+use std::io::{Seek, SeekFrom, Write};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 /// A lamp, and its render with some samples that are left out.
 fn rendered() -> (Scene, Rendered) {
-    let mut scene = empty(5, 4);
+    let mut scene = empty(3, 2);
     let wall = quad(Vec3::new(-1.0, -1.0, -1.0), Vec3::X * 3.0, Vec3::Y * 3.0);
     add(&mut scene, wall, lamp(Vec3::new(1.0, 2.0, 3.0)), Affine3A::IDENTITY);
     let mut renderer = backend::open(&scene, &Request { backend: Some(Backend::Cpu), device: None }).unwrap();
@@ -19,7 +20,7 @@ fn rendered() -> (Scene, Rendered) {
     let nothing = Rendered::nothing(renderer.size, 0).unwrap();
     let mut rendered = renderer.resume(nothing, limits, &mut |_| {}, &AtomicBool::new(false)).unwrap();
     assert!(matches!(rendered.end, End::Samples));
-    rendered.film.dropped.insert((7, 2), 1);
+    rendered.film.dropped.insert((4, 2), 1);
     rendered.film.sums[3][1] = [1.0e-300, -0.0, 12345.678];
     (scene, rendered)
 }
@@ -38,21 +39,23 @@ fn no_byte_changes_unnoticed() {
     part::save(&path, &rendered, &Provenance::of(&scene)).unwrap();
     let sound = std::fs::read(&path).unwrap();
     assert!(read(&path).unwrap() == rendered.film);
-    // All of the head, where each byte means something else, and every bit of some of the pixels.
-    let mut refused = 0;
+    let mut file = std::fs::File::options().write(true).open(&path).unwrap();
+    let mut put = |at: usize, byte: u8| {
+        file.seek(SeekFrom::Start(at as u64)).unwrap();
+        file.write_all(&[byte]).unwrap();
+    };
+    // One bit of every byte, and every bit of some of them.
     for at in 0..sound.len() {
-        for flip in if at % 16 == 0 { vec![1, 2, 4, 8, 16, 32, 64, 128, 0xff] } else { vec![1 << (at % 8)] } {
-            let mut damaged = sound.clone();
-            damaged[at] ^= flip;
-            std::fs::write(&path, &damaged).unwrap();
-            match read(&path) {
-                Ok(film) => assert!(film == rendered.film, "byte {at} of {}, flipped by {flip}, is read", sound.len()),
-                Err(_) => refused += 1,
+        let thorough = at % 64 == 0;
+        for bit in if thorough { 0..8 } else { at % 8..at % 8 + 1 } {
+            put(at, sound[at] ^ 1 << bit);
+            assert!(read(&path).is_err(), "byte {at} of {}, bit {bit}", sound.len());
+            if thorough {
+                assert!(part::resume(&path, &scene).is_err() && part::merge(std::slice::from_ref(&path)).is_err());
             }
-            assert!(part::resume(&path, &scene).is_err() && part::merge(&[path.clone()]).is_err(), "byte {at}");
         }
+        put(at, sound[at]);
     }
-    assert!(refused >= sound.len());
     // Cut off, and grown.
     for length in [0, 7, 100, sound.len() / 2, sound.len() - 1] {
         std::fs::write(&path, &sound[..length]).unwrap();

@@ -112,7 +112,10 @@ mod tests {
     fn absurd_sizes_are_refused() {
         let absurd = Demand { width: 65536, height: 65535, sums: true, ..Demand::default() };
         let error = absurd.fits(Some(8 << 30)).unwrap_err().to_string();
-        assert!(error.contains("65536 x 65535") && error.contains("1012.0 GiB") && error.contains("8.0 GiB"), "{error}");
+        assert!(
+            error.contains("65536 x 65535") && error.contains("1012.0 GiB") && error.contains("8.0 GiB"),
+            "{error}"
+        );
         let plain = Demand { width: 1920, height: 1080, ..Demand::default() };
         assert!(plain.fits(Some(8 << 30)).is_ok() && plain.fits(None).is_ok());
         assert!(plain.fits(Some(plain.bytes())).is_ok() && plain.fits(Some(plain.bytes() - 1)).is_err());

@@ -43,7 +43,7 @@ impl Film {
     /// A black film without samples.
     ///
     /// # Errors
-    /// [`Error::Limit`] if it does not fit into memory, as [`Film::check_size`] finds.
+    /// [`Error::Limit`](crate::Error::Limit) if it does not fit into memory, as [`Film::check_size`] finds.
     pub fn new(width: u32, height: u32) -> Result<Self> {
         Film::check_size(width, height)?;
         let pixels = width as usize * height as usize;

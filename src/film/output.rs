@@ -11,7 +11,7 @@ impl Film {
     /// Writes the picture to `path` in the format of its ending. `exposure` is in stops and changes a PNG only.
     ///
     /// # Errors
-    /// [`Error::Usage`] for an unknown ending, [`Error::Write`] if the system refuses; then nothing has changed at `path`.
+    /// [`Error::Usage`](crate::Error::Usage) for an unknown ending, [`Error::Write`](crate::Error::Write) if the system refuses; then nothing has changed at `path`.
     pub fn save(&self, path: &Path, exposure: f32) -> Result<()> {
         match Format::of(path)? {
             Format::Exr => self.save_exr(path, vec![], vec![], |_| Ok(())),
@@ -22,7 +22,7 @@ impl Film {
     /// Writes an EXR picture with the layers of its AOVs ([`Aovs::channels`]) and the number of samples, `samples`.
     ///
     /// # Errors
-    /// [`Error::Write`] if the system refuses; then nothing has changed at `path`.
+    /// [`Error::Write`](crate::Error::Write) if the system refuses; then nothing has changed at `path`.
     pub fn save_with_aovs(&self, path: &Path, aovs: &Aovs) -> Result<()> {
         let mut more = aovs.channels();
         more.push(("samples".into(), Values::Integer(self.samples.clone())));
@@ -32,7 +32,7 @@ impl Film {
     /// Writes an EXR picture with further channels and attributes; `finish` may still change the file.
     ///
     /// # Errors
-    /// [`Error::Write`] if the system refuses; then nothing has changed at `path`.
+    /// [`Error::Write`](crate::Error::Write) if the system refuses; then nothing has changed at `path`.
     pub(crate) fn save_exr(
         &self,
         path: &Path,

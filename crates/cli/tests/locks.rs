@@ -8,15 +8,32 @@ use std::time::Duration;
 
 const CHECKPOINT: [&str; 5] = ["--checkpoint", "c.exr", "--checkpoint-every", "0.01", "--resume"];
 
+/// A job that is killed when a test ends, however it does.
+struct Job(Child);
+
+impl Job {
+    /// Kills it as a power cut does.
+    fn kill(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+impl Drop for Job {
+    fn drop(&mut self) {
+        self.kill();
+    }
+}
+
 /// A render that lasts until it is killed, once it has a checkpoint.
-fn endless(folder: &Folder, more: &[&str]) -> Child {
+fn endless(folder: &Folder, more: &[&str]) -> Job {
     let words = ["render", "good.obj", "--backend", "cpu", "--width", "16", "--quiet", "-o", "a.exr"];
-    let mut child = folder.luminaire(&[&words[..], &CHECKPOINT, more].concat()).spawn().unwrap();
+    let mut job = Job(folder.luminaire(&[&words[..], &CHECKPOINT, more].concat()).spawn().unwrap());
     for _ in 0..6000 {
         if folder.path().join("c.exr").exists() {
-            return child;
+            return job;
         }
-        assert!(child.try_wait().unwrap().is_none(), "the render has ended");
+        assert!(job.0.try_wait().unwrap().is_none(), "the render has ended");
         std::thread::sleep(Duration::from_millis(10));
     }
     panic!("there is no checkpoint after a minute");
@@ -25,8 +42,8 @@ fn endless(folder: &Folder, more: &[&str]) -> Child {
 #[test]
 fn one_checkpoint_is_one_jobs() {
     let folder = Folder::new();
-    let mut child = endless(&folder, &["--time", "600"]);
-    let process = format!("process {} on ", child.id());
+    let mut first = endless(&folder, &["--time", "600"]);
+    let process = format!("process {} on ", first.0.id());
     let words = ["render", "good.obj", "--backend", "cpu", "--width", "16", "--quiet", "--spp", "4", "-o", "b.exr"];
     for name in ["c.exr", "./c.exr"] {
         let more = ["--checkpoint", name, "--resume"];
@@ -36,8 +53,7 @@ fn one_checkpoint_is_one_jobs() {
     }
     assert!(!folder.path().join("b.exr").exists());
     // Killed as a power cut does: the lock file stays, and nobody holds it.
-    child.kill().unwrap();
-    child.wait().unwrap();
+    first.kill();
     assert!(folder.path().join("c.exr.lock").exists());
     let output = folder.luminaire(&[&words[..], &CHECKPOINT].concat()).output().unwrap();
     assert!(output.status.success(), "{}", stderr(&output));
@@ -51,14 +67,13 @@ fn one_checkpoint_is_one_jobs() {
 #[test]
 fn one_part_is_one_jobs() {
     let folder = Folder::new();
-    let mut child = endless(&folder, &["--samples", "0..4000000000"]);
+    let mut first = endless(&folder, &["--samples", "0..4000000000"]);
     let words = ["render", "good.obj", "--backend", "cpu", "--width", "16", "--quiet", "--samples", "0..4"];
     let job = |name: &str| folder.luminaire(&[&words[..], &["-o", name]].concat()).output().unwrap();
     let output = job("a.exr");
     assert!(output.status.code() == Some(1) && stderr(&output).contains("a.exr.lock"), "{}", stderr(&output));
     assert!(job("b.exr").status.success());
-    child.kill().unwrap();
-    child.wait().unwrap();
+    first.kill();
     assert!(job("a.exr").status.success());
 }
 
