@@ -1,8 +1,8 @@
 //! The sensor and the samplers, the kernel's against the reference's.
 
+use super::pictures::{differing, pixels};
 use super::*;
 use crate::common::scenes::*;
-use super::pictures::{differing, pixels};
 use glam::{Affine3A, DVec3, Vec3};
 use luminaire::gpu::probe::{Call, Function, Probe};
 use luminaire::reference::Reference;
@@ -113,13 +113,9 @@ fn distant_sheet(distance: f32, parallel: bool, lens: Option<f32>) -> Scene {
 /// sample by sample. Cameras near by start where they did.
 #[test]
 fn distant_cameras_see_what_the_reference_sees() {
-    for (distance, parallel, lens) in [
-        (707.0, false, None),
-        (7e5, false, None),
-        (7e5, true, None),
-        (7e4, false, Some(0.1)),
-        (7e6, true, Some(0.01)),
-    ] {
+    for (distance, parallel, lens) in
+        [(707.0, false, None), (7e5, false, None), (7e5, true, None), (7e4, false, Some(0.1)), (7e6, true, Some(0.01))]
+    {
         let scene = distant_sheet(distance, parallel, lens);
         let bounds = scene.world_bounds();
         let start = scene.sensor.start(&scene.film, bounds);

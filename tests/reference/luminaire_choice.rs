@@ -60,9 +60,9 @@ fn both_strategies_have_one_density() {
         let hit = tracer.closest_hit(from, -DVec3::Y, f64::INFINITY, 0).expect("the floor");
         let floor = tracer.surfel(&hit, DVec3::Y);
         let Some((wi, density)) = tracer.sampled_direction(&floor, random4(i, 0, 1, 8)) else { continue };
-        let Some(met) = tracer
-            .closest_hit(floor.offset_ray_origin(wi), wi, f64::INFINITY, 0)
-            .filter(|hit| hit.object == 0) else {
+        let Some(met) =
+            tracer.closest_hit(floor.offset_ray_origin(wi), wi, f64::INFINITY, 0).filter(|hit| hit.object == 0)
+        else {
             continue;
         };
         let by_chance = tracer.luminaire_pdf(floor.position, &tracer.surfel(&met, -wi));

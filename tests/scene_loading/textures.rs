@@ -332,7 +332,9 @@ fn a_scene_file_places_maps() {
     assert_eq!(diffuse(&placed).transform, expected);
     assert_eq!(diffuse(&scene("{ image = \"a.png\" }").load("scene.toml")).transform, Affine2::IDENTITY);
     assert_eq!(first_material(&scene("{ image = \"\" }").load("scene.toml")).maps.lambert, None);
-    for wrong in ["{ scale = [1, 2] }", "{ image = \"a.png\", scale = [0, 1] }", "{ image = \"a.png\", scal = [1, 1] }", "3"] {
+    for wrong in
+        ["{ scale = [1, 2] }", "{ image = \"a.png\", scale = [0, 1] }", "{ image = \"a.png\", scal = [1, 1] }", "3"]
+    {
         scene(wrong).fails_at("scene.toml", "scene.toml", (5, 15), &["name of an image", "from -1e6 to 1e6"]);
     }
     scene("{ image = \"b.png\" }").fails_at("scene.toml", "scene.toml", (5, 15), &["b.png"]);

@@ -261,7 +261,8 @@ fn limit(material: &mut Material, scaled: [bool; 3], sum: impl Fn(&Material) -> 
     // Below that it is the rounding of the sum, which nobody needs to hear about.
     if before > 1.000_01 {
         let part = |scaled: bool, albedo: Vec3| if scaled { albedo.max_element() } else { 0.0 };
-        let (reflection, transmission) = (part(reflected, original.reflection), part(transmitted, original.transmission));
+        let (reflection, transmission) =
+            (part(reflected, original.reflection), part(transmitted, original.transmission));
         let parts = [
             (part(base, original.lambert), "diffuse"),
             (part(base, original.glossy), "glossy"),

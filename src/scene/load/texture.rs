@@ -80,7 +80,17 @@ pub(super) struct Textures {
 impl MapFile {
     /// A map without options.
     pub(super) fn plain(names: Vec<String>, folder: &Path, at: String) -> Self {
-        MapFile { names, folder: folder.to_owned(), at, clamp: false, base: 0.0, gain: 1.0, channel: Channel::Any, scale: Vec2::ONE, offset: Vec2::ZERO }
+        MapFile {
+            names,
+            folder: folder.to_owned(),
+            at,
+            clamp: false,
+            base: 0.0,
+            gain: 1.0,
+            channel: Channel::Any,
+            scale: Vec2::ONE,
+            offset: Vec2::ZERO,
+        }
     }
 
     /// First the scale, then the offset: so Blender and three.js read and write `-s` and `-o`.
