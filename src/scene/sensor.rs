@@ -72,7 +72,7 @@ impl Sensor {
             // All rays round alike: a shift, not a blur.
             Projection::Orthographic { .. } => coordinates,
         };
-        self.pixel(film, start + depth) < ROUNDINGS_IN_A_PIXEL * ROUNDING * largest
+        self.pixel(film, self.in_front_of(bounds) + depth) < ROUNDINGS_IN_A_PIXEL * ROUNDING * largest
     }
 
     /// The height of a pixel at a distance.

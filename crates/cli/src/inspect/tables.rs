@@ -1,6 +1,6 @@
 //! The tables of `luminaire inspect`.
 
-use luminaire::glam::{DVec3, Vec3};
+use luminaire::glam::{Affine2, DVec3, Vec2, Vec3};
 use luminaire::scene::{Luminaire, LuminaireTable, Material, Mesh, SampledLuminaire, Scene};
 
 /// Meshes and what they have.
@@ -81,7 +81,9 @@ fn besides(scene: &Scene, m: &Material) -> String {
             rgb(m.transmission)
         )),
         Some(eta) if m.reflection != Vec3::ZERO => {
-            parts.push(format!("mirror with Fresnel's reflectance for index {eta}, reflection {}", rgb(m.reflection)));
+            let place = if m.is_coated() { " over the rest" } else { "" };
+            let reflection = rgb(m.reflection);
+            parts.push(format!("mirror{place} with Fresnel's reflectance for index {eta}, reflection {reflection}"));
         }
         _ if m.reflection != Vec3::ZERO => parts.push(format!("mirror, reflection {}", rgb(m.reflection))),
         _ => {}
@@ -114,10 +116,17 @@ pub(super) fn textures(scene: &Scene) -> Vec<Vec<String>> {
             (1.0, _) => "opaque".into(),
             (least, most) => format!("{least} to {most}"),
         };
+        let outside = if texture.clamp { "clamped" } else { "repeated" };
+        let Affine2 { matrix2, translation } = texture.transform;
+        let placed = if texture.transform == Affine2::IDENTITY {
+            String::new()
+        } else {
+            format!(", scaled by {}, moved by {translation}", Vec2::new(matrix2.x_axis.x, matrix2.y_axis.y))
+        };
         rows.push(vec![
             texture.name.clone(),
             format!("{} x {}", texture.width, texture.height),
-            if texture.clamp { "clamped" } else { "repeated" }.into(),
+            format!("{outside}{placed}"),
             alpha,
         ]);
     }
