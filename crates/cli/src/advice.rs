@@ -191,9 +191,7 @@ fn argument(word: &str, words: &[String]) -> Option<String> {
         return Some(format!("an option of more than one letter has two dashes: --{long}"));
     }
     if dashes == 0 {
-        if is_picture(word)
-            || words.iter().skip(2).any(|other| other == word) && is_scene(word) && first_is_picture(words)
-        {
+        if is_picture(word) || is_scene(word) && first_is_picture(words) {
             let scene = words.iter().skip(2).find(|word| is_scene(word)).map_or("SCENE", String::as_str);
             let picture = words.iter().skip(2).find(|word| is_picture(word)).map_or("PICTURE", String::as_str);
             return Some(format!(
