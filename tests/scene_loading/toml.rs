@@ -189,7 +189,8 @@ fn numbers_out_of_range_are_found_with_line_and_column() {
     toml_fails(&sensor("fov", "nan"), (5, 7), &["between 0 and 180"]);
     toml_fails(&sensor("position", "[0, inf, 0]"), (2, 12), &["finite"]);
     toml_fails(&sensor("position", "[0, 1e300, 0]"), (2, 12), &["finite"]);
-    toml_fails(&sensor("position", "[0, 1]"), (2, 12), &["length"]);
+    toml_fails(&sensor("position", "[0, 1]"), (2, 12), &["three numbers, found 2"]);
+    toml_fails(&sensor("position", "[0, 1, 2, 3]"), (2, 12), &["three numbers, found 4"]);
     toml_fails("[[material]]\nname = \"m\"\ndiffuse = [0.5, -0.1, 0]\n", (3, 11), &["negative"]);
     toml_fails("[[material]]\nname = \"m\"\nexponent = -1\n", (3, 12), &["at least 0"]);
     toml_fails("[[material]]\nname = \"m\"\neta = 0\n", (3, 7), &["from 0.01 to 100"]);

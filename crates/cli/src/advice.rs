@@ -1,7 +1,5 @@
 //! What is meant instead of a command line that cannot be read, added to what clap says about it.
 
-use crate::Args;
-use clap::CommandFactory;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use std::path::Path;
 
@@ -89,10 +87,13 @@ const BACKENDS: &[(&[&str], &str)] = &[
     (&["reference", "embree", "llvm", "scalar", "scalar_rgb", "llvm_ad_rgb", "host", "x86"], "the CPU is cpu"),
 ];
 
-/// What clap says about a command line, with its guesses replaced by what is meant where that is known. `words` is the command line.
-pub fn with_advice(error: clap::Error, words: &[String]) -> clap::Error {
-    let Some(advice) = advice(&error, words) else { return error };
-    let mut advised = clap::Error::new(error.kind()).with_cmd(&command_of(words));
+/// What clap says about a command line, with its guesses replaced by what is meant where that is known. `words` is the command line of
+/// `program`.
+pub fn with_advice(error: clap::Error, words: &[String], mut program: clap::Command) -> clap::Error {
+    program.build();
+    let Some(advice) = advice(&error, words, &program) else { return error };
+    let name = words.get(1).map_or("", String::as_str);
+    let mut advised = clap::Error::new(error.kind()).with_cmd(program.find_subcommand(name).unwrap_or(&program));
     let guesses = [
         ContextKind::SuggestedArg,
         ContextKind::SuggestedSubcommand,
@@ -106,15 +107,7 @@ pub fn with_advice(error: clap::Error, words: &[String]) -> clap::Error {
     advised
 }
 
-/// The subcommand of a command line, or the whole program.
-fn command_of(words: &[String]) -> clap::Command {
-    let mut program = Args::command();
-    program.build();
-    let name = words.get(1).map_or("", String::as_str);
-    program.find_subcommand(name).cloned().unwrap_or(program)
-}
-
-fn advice(error: &clap::Error, words: &[String]) -> Option<String> {
+fn advice(error: &clap::Error, words: &[String], program: &clap::Command) -> Option<String> {
     let text = |kind| match error.get(kind) {
         Some(ContextValue::String(text)) => Some(text.as_str()),
         _ => None,
@@ -124,7 +117,7 @@ fn advice(error: &clap::Error, words: &[String]) -> Option<String> {
         ErrorKind::UnknownArgument => {
             // With its value, where it has one behind an equals sign.
             let word = text(ContextKind::InvalidArg)?.split_whitespace().next()?;
-            argument(word, words)
+            argument(word, words, program)
         }
         ErrorKind::InvalidValue if text(ContextKind::InvalidArg)?.starts_with("--backend") => {
             let name = text(ContextKind::InvalidValue)?.to_lowercase();
@@ -172,11 +165,10 @@ fn subcommand(word: &str) -> Option<String> {
 }
 
 /// What an option or a word that has no place means.
-fn argument(word: &str, words: &[String]) -> Option<String> {
+fn argument(word: &str, words: &[String], program: &clap::Command) -> Option<String> {
     let name = word.trim_start_matches('-');
     let dashes = word.len() - name.len();
     let name = name.split_once('=').map_or(name, |(name, _)| name);
-    let program = Args::command();
     let here = words.get(1).map_or("", String::as_str);
     let at_top = program.find_subcommand(here).is_none();
     let has = |command: &clap::Command, name: &str| command.get_arguments().any(|arg| arg.get_long() == Some(name));
@@ -191,9 +183,7 @@ fn argument(word: &str, words: &[String]) -> Option<String> {
         return Some(format!("an option of more than one letter has two dashes: --{long}"));
     }
     if dashes == 0 {
-        if is_picture(word)
-            || words.iter().skip(2).any(|other| other == word) && is_scene(word) && first_is_picture(words)
-        {
+        if is_picture(word) || is_scene(word) && first_is_picture(words) {
             let scene = words.iter().skip(2).find(|word| is_scene(word)).map_or("SCENE", String::as_str);
             let picture = words.iter().skip(2).find(|word| is_picture(word)).map_or("PICTURE", String::as_str);
             return Some(format!(

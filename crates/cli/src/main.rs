@@ -82,7 +82,7 @@ fn main() -> ExitCode {
         std::sync::Arc::new(std::sync::atomic::AtomicBool::new(true)),
     );
     let words: Vec<String> = std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect();
-    let args = Args::try_parse().unwrap_or_else(|error| advice::with_advice(error, &words).exit());
+    let args = Args::try_parse().unwrap_or_else(|error| advice::with_advice(error, &words, Args::command()).exit());
     let result = match &args.command {
         Command::Render(options) => render::run(options),
         Command::Merge(options) => merge::run(options),

@@ -2,7 +2,6 @@
 
 use std::cell::RefCell;
 use std::fs::File;
-use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Output};
 use std::time::{Duration, Instant};
 
@@ -100,7 +99,7 @@ impl Running {
     }
 
     fn read(&self, name: &str) -> Vec<u8> {
-        std::fs::read(Path::new(self.said.path()).join(name)).unwrap_or_default()
+        std::fs::read(self.said.path().join(name)).unwrap_or_default()
     }
 
     /// Processor time in ticks, where the system says it (Linux: the fields `utime` and `stime` of `proc(5)`).
