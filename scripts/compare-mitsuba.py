@@ -22,7 +22,7 @@ Take 16 seeds or more on each side: with fewer, a block none of whose seeds has 
 pixel filter (Mitsuba: <rfilter type="box"/>), the number of bounces (max_depth -1) and which sides of a lamp shine (Mitsuba: one; luminaire:
 `one_sided = true`) have to be the same in both scenes.
 
-A race renders in turn, several times, each time with another seed. What counts is relMSE (the mean of (a - b)^2 / (b^2 + (m/10)^2) over pixels and
+A race renders in turn, several times, each time with another seed. What counts is relMSE (the mean of (a - b)^2 / (b^2 + (m/3)^2) over pixels and
 channels, m the half-power mean of the reference b) times the seconds for rendering alone: half of it is twice as fast. Loading, building and the first use of a kernel are left out on both sides; Mitsuba's
 seconds have what its Python does for a render, and the reference's own error is in both errors.
 """

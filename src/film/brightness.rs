@@ -3,10 +3,10 @@
 use super::Film;
 
 /// The definition of relMSE, in words: the one that everything here goes by.
-pub const REL_MSE: &str = "mean of (a - b)^2 / (b^2 + (m/10)^2), m the half-power mean of b";
+pub const REL_MSE: &str = "mean of (a - b)^2 / (b^2 + (m/3)^2), m the half-power mean of b";
 
-/// What is darker than this share of the half-power mean counts less.
-const DARK: f64 = 0.1;
+/// What is darker than this share of the half-power mean counts less. With a third, a picture of the usual brightness, 0.3, has the customary `b^2 + 0.01`.
+const DARK: f64 = 1.0 / 3.0;
 
 /// How bright a picture is: its half-power mean, `(mean of sqrt(max(b, 0)))^2` over pixels and channels.
 ///
@@ -96,8 +96,8 @@ mod tests {
             assert_eq!(black.relative_square(1e-9, 0.0), f64::INFINITY);
         }
         let ten = Brightness::of([10.0]);
-        assert!((ten.relative_square(3.0, 2.0) - 9.0 / 5.0).abs() < 1e-12);
-        assert!((ten.relative_square(1e-6, 0.0) - 1e-12).abs() < 1e-24);
+        assert!((ten.relative_square(5.0, 10.0) - 25.0 / (100.0 + 100.0 / 9.0)).abs() < 1e-12);
+        assert!((ten.relative_square(1e-6, 0.0) - 9e-14).abs() < 1e-25);
     }
 
     #[test]

@@ -220,7 +220,7 @@ mod tests {
         // The reference's roots are 1, 1 and twice the root of 3.
         let m = ((2.0 + 2.0 * 3f64.sqrt()) / 6.0).powi(2);
         near(found.half_power_mean, m);
-        let dark = m * m / 100.0;
+        let dark = m * m / 9.0;
         let (first, second) = (0.01 / dark + 1.0 / (1.0 + dark), 1.0 / (9.0 + dark) + 4.0 / dark);
         near(found.relmse, (first + second) / 6.0);
         near(found.bias[0].difference, 0.05);

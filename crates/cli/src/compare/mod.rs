@@ -44,7 +44,7 @@ pub struct Options {
     /// Fail above this root-mean-square error, in units of the pictures.
     #[arg(long, value_name = "X", allow_negative_numbers = true, value_parser = limit, help_heading = "Limits")]
     max_rmse: Option<f64>,
-    /// Fail above this relMSE, the mean of (a - b)^2 / (b^2 + (m/10)^2), m the half-power mean of b, the reference: it does not depend on the unit of
+    /// Fail above this relMSE, the mean of (a - b)^2 / (b^2 + (m/3)^2), m the half-power mean of b, the reference: it does not depend on the unit of
     /// the pictures.
     #[arg(long, value_name = "X", allow_negative_numbers = true, value_parser = limit, help_heading = "Limits")]
     max_relmse: Option<f64>,

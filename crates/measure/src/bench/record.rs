@@ -61,7 +61,7 @@ pub(super) struct Run {
     pub budget_seconds: f64,
     pub estimators: Vec<String>,
     pub scenes: Vec<SceneRecord>,
-    /// What relMSE is ([`REL_MSE`]). Runs from before it was written down had a fixed 0.01 in the place of `(m/10)^2`.
+    /// What relMSE is ([`REL_MSE`]). Runs from before it was written down had a fixed 0.01 in the place of `(m/3)^2`.
     #[serde(default = "fixed_floor")]
     pub relmse: String,
 }
