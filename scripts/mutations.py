@@ -63,6 +63,15 @@ MUTATIONS = [
      "random4(pixel, ~part, block, seed)", "random4(pixel, ~0u, block, seed)", [ERROR_BAR, KERNEL]),
     ("samples left out still count", "src/film/mod.rs",
      "taken - self.dropped.get(&(pixel, part)).unwrap_or(&0)", "taken", [["--lib", "film"]]),
+    ("lamps in one place count each", "src/scene/overlap/mod.rs",
+     "self.dropped[other] = true;\n        if back_to_back {", "if back_to_back {", [REFERENCE]),
+    ("lamps in a ceiling stay there", "src/scene/overlap/mod.rs",
+     "self.lifted[lamp] = true;", "", [REFERENCE]),
+    ("vertex colours without the ambient albedo", "shaders/surfel.glsl",
+     "if (SIMPLE) material.ambient *= s.colour;", "", [KERNEL]),
+    ("vertex colours of the first corner", "src/reference/hit.rs",
+     "    interpolate(weights, triangle.vertices.map(|v| mesh.colours[v as usize].as_dvec3()))",
+     "    mesh.colours[triangle.vertices[0] as usize].as_dvec3()", [REFERENCE]),
 ]
 
 
