@@ -84,11 +84,20 @@ MUTATIONS = [
     ("fireflies with a unit", "src/film/error.rs",
      "(expected + FIREFLY_FLOOR * half_power_mean)", "(expected + FIREFLY_FLOOR)", [LIBRARY]),
     ("a black picture without an error", "src/film/error.rs",
-     "let known = !brightness.is_black();", "let known = true;", [LIBRARY]),
+     "Some((!brightness.is_black()).then(||", "Some(Some(()).map(|()|", [LIBRARY]),
     ("light through glass counts as found", "src/reference/lost_light.rs",
      "(&mut seen.impulses[at], surfaces > 0)", "(&mut seen.impulses[at], false)", [REFERENCE]),
     ("light by mirrors counts as found", "src/reference/lost_light.rs",
      "*(if surfaces == 0 { &mut sent.landed.found } else { &mut sent.landed.lost }) += landed;", "sent.landed.found += landed;", [REFERENCE]),
+    ("lamps in one place count each", "src/scene/overlap/mod.rs",
+     "self.dropped[other] = true;\n        if back_to_back {", "if back_to_back {", [REFERENCE]),
+    ("lamps in a ceiling stay there", "src/scene/overlap/mod.rs",
+     "self.lifted[lamp] = true;", "", [REFERENCE]),
+    ("vertex colours without the ambient albedo", "shaders/surfel.glsl",
+     "if (SIMPLE) material.ambient *= s.colour;", "", [KERNEL]),
+    ("vertex colours of the first corner", "src/reference/hit.rs",
+     "    interpolate(weights, triangle.vertices.map(|v| mesh.colours[v as usize].as_dvec3()))",
+     "    mesh.colours[triangle.vertices[0] as usize].as_dvec3()", [REFERENCE]),
 ]
 
 

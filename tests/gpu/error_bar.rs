@@ -116,7 +116,7 @@ fn rendered(tracer: &mut dyn Tracer, size: u32, limits: Limits) -> Rendered {
 
 fn picture(film: &Film) -> Picture {
     let rgb = film.to_linear().as_chunks().0.to_vec();
-    Picture { width: film.width, height: film.height, rgb, error: None, clamped: false }
+    Picture { width: film.width, height: film.height, rgb, error: None, clamped: false, warnings: vec![] }
 }
 
 /// The same scene in another unit of light: the same error, the same map of it, the same fireflies, the same end by a limit of the noise, and the same distance
