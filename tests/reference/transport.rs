@@ -294,7 +294,7 @@ fn pictures_agree_within_their_uncertainty() {
         let mut scene = cornell_like(16, 16);
         scene.settings.seed = seed;
         scene.materials[0].lambert = Vec3::splat(wall);
-        render(&mut Reference::new(&scene), 16, 16, 512, 32)
+        render(&mut Reference::new(&scene), 16, 16, 1024, 32)
     };
     let first = picture(1, 0.7);
     let p = compare(&first, &picture(2, 0.7));

@@ -23,7 +23,7 @@ fn the_estimated_error_is_the_true_one() {
     let scenes = [("room", cornell_like(32, 32)), ("textures", textured_room(32, 32)), ("open air", open_air(32, 32))];
     for (name, mut scene) in scenes {
         scene.settings.sampler = Sampler::Sobol;
-        let found = calibrate(&|scene| bench.tracer(scene, backend), &scene, &[64, 256], 6, 4096).expect("it renders");
+        let found = calibrate(&|scene| bench.tracer(scene, backend), &scene, &[64, 256], 6, 8192).expect("it renders");
         for c in found {
             let ratio = c.ratio();
             println!("{name}: {} +- {}, {c:?}", ratio.mean, ratio.error);
