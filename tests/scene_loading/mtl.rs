@@ -162,7 +162,7 @@ fn illum_4_6_7_and_9_are_glass() {
         assert_eq!((m.reflection, m.transmission, m.eta), (Vec3::ONE, Vec3::ONE, Some(1.5)));
         assert!(warnings.len() == 1 && warnings[0].contains("Ni"), "{warnings:?}");
     }
-    let (m, warnings) = read("Kd .5 .5 .5\nNi 1.5\nillum 7");
+    let (m, warnings) = read_glass("Kd .5 .5 .5\nNi 1.5\nillum 7");
     assert!((m.lambert.x - 1.0 / 3.0).abs() < 1e-6 && (m.transmission.x - 2.0 / 3.0).abs() < 1e-6, "{m:?}");
     assert!(warnings.len() == 2 && warnings[1].contains("create energy"), "{warnings:?}");
     assert!(
