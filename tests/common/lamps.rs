@@ -95,7 +95,8 @@ pub fn scene(mesh: &str, more: &str) -> Scene {
     write("m.mtl", "newmtl floor\nKd 0.5 0.5 0.5\nnewmtl black\nKd 0 0 0\nnewmtl lamp\nKd 0 0 0\nKe 2 2 2\n");
     write("floor.obj", "mtllib m.mtl\nv -4 0 -4\nv 4 0 -4\nv 4 0 4\nv -4 0 4\nusemtl floor\nf 4 3 2 1\n");
     write("lamp.obj", &format!("mtllib m.mtl\n{mesh}"));
-    let sensor = "[sensor]\nposition = [0, 0.5, 0.001]\ntarget = [0, 0, 0]\nfov = 0.15\n[film]\nwidth = 4\nheight = 4\n";
+    let sensor =
+        "[sensor]\nposition = [0, 0.5, 0.001]\ntarget = [0, 0, 0]\nfov = 0.15\n[film]\nwidth = 4\nheight = 4\n";
     let objects = "[[object]]\nmesh = \"floor.obj\"\n[[object]]\nmesh = \"lamp.obj\"\n";
     write("scene.toml", &format!("{sensor}{objects}{more}"));
     load(&folder.path().join("scene.toml")).unwrap_or_else(|error| panic!("{error}"))

@@ -35,7 +35,9 @@ pub fn load(path: &Path) -> Result<Scene> {
         "toml" => toml::load(path).map_err(with_what_is_there(path))?,
         "obj" => bare_mesh::load(path).map_err(with_what_is_there(path))?,
         _ => {
-            let what = other_formats::named(path).unwrap_or("not a scene".into());
+            // Who names a picture first has swapped two words, and is told so.
+            let foreign = if is_picture(&ending) { None } else { other_formats::named(path) };
+            let what = foreign.unwrap_or("not a scene".into());
             return Err(Error::Usage(format!(
                 "{}: {what}; expected a scene file ending in .toml or a mesh ending in .obj{}",
                 path.display(),
@@ -87,7 +89,7 @@ fn what_else(path: &Path, ending: &str) -> String {
             None => "; this is a folder".into(),
         };
     }
-    if ["png", "exr", "hdr", "jpg", "jpeg"].contains(&ending) {
+    if is_picture(ending) {
         return "; the scene comes first, and the picture behind -o: luminaire render SCENE -o PICTURE".into();
     }
     let with_ending = ["toml", "obj"].map(|ending| std::path::PathBuf::from(format!("{}.{ending}", path.display())));
@@ -95,6 +97,11 @@ fn what_else(path: &Path, ending: &str) -> String {
         Some(scene) if ending.is_empty() => format!(": there is {}", scene.display()),
         _ => String::new(),
     }
+}
+
+/// Whether a file is a picture by the ending of its name.
+fn is_picture(ending: &str) -> bool {
+    ["png", "exr", "hdr", "jpg", "jpeg"].contains(&ending)
 }
 
 /// Whether a file is a scene by its name.
