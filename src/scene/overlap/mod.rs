@@ -77,7 +77,7 @@ struct Merger<'a> {
 impl Scene {
     /// Leaves one lamp where several lie on each other, and says what it did, one sentence each: lamps that emit the same become one; of others the
     /// first shows; one-sided lamps back to back go on shining each its own way. Partly transparent triangles in one place become one, too, and
-    /// what does not emit goes where it lies exactly on a lamp. [`load`](super::load) has called this already.
+    /// what does not emit goes where it lies exactly on a lamp. [`load`](fn@super::load) has called this already.
     pub fn merge_overlapping_lamps(&mut self) -> Vec<String> {
         let faces = faces(self);
         if faces.is_empty() {

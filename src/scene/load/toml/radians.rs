@@ -33,6 +33,7 @@ mod tests {
     use super::*;
 
     #[test]
+    #[expect(clippy::approx_constant, reason = "to the digits that people write")]
     fn radians_are_seen_and_degrees_left_alone() {
         assert!(field_of_view(0.785).is_some_and(|text| text.contains("write 45.0")));
         assert_eq!([2.0, 45.0, 0.1, 5e-5].map(field_of_view), [const { None }; 4]);
