@@ -34,17 +34,31 @@ impl Reference {
     /// Radiance of one sample of a pixel (`y * width + x`), and the number of rays that were traced for it. It is not finite if the
     /// path's numbers were not, or if it would be longer than [`LONGEST_PATH`].
     pub fn radiance(&self, pixel: u32, sample: u32) -> (DVec3, Rays) {
-        self.follow(pixel, sample, &mut |_| {})
+        self.follow(pixel, sample, &mut |_| true)
     }
 
     /// The same, with every ray of the path (without those to the luminaires).
     pub fn vertices(&self, pixel: u32, sample: u32) -> (DVec3, Vec<Vertex>) {
         let mut vertices = vec![];
-        let (radiance, _) = self.follow(pixel, sample, &mut |vertex| vertices.push(vertex));
+        let (radiance, _) = self.follow(pixel, sample, &mut |vertex| {
+            vertices.push(vertex);
+            true
+        });
         (radiance, vertices)
     }
 
-    fn follow(&self, pixel: u32, sample: u32, met: &mut impl FnMut(Vertex)) -> (DVec3, Rays) {
+    /// The first rays of the path, `most` of them at most.
+    pub fn first_vertices(&self, pixel: u32, sample: u32, most: usize) -> Vec<Vertex> {
+        let mut vertices = vec![];
+        self.follow(pixel, sample, &mut |vertex| {
+            vertices.push(vertex);
+            vertices.len() < most
+        });
+        vertices
+    }
+
+    /// Follows a path for as long as `met` says, which is given every ray of it.
+    fn follow(&self, pixel: u32, sample: u32, met: &mut impl FnMut(Vertex) -> bool) -> (DVec3, Rays) {
         let settings = &self.scene.settings;
         let numbers = |block: u32| settings.sampler.numbers(pixel, sample, block, settings.seed);
         let salt = |ray: u32| ray_salt(pixel, sample, ray, settings.seed);
@@ -89,8 +103,8 @@ impl Reference {
             if let Integrator::Simple { ambient } = self.scene.integrator {
                 radiance += ambient.as_dvec3() * surfel.ambient;
             }
-            met(Vertex { hit: Some(hit), origin, direction, throughput, radiance });
-            if matches!(self.scene.integrator, Integrator::Simple { .. }) {
+            let go_on = met(Vertex { hit: Some(hit), origin, direction, throughput, radiance });
+            if !go_on || matches!(self.scene.integrator, Integrator::Simple { .. }) {
                 break;
             }
 

@@ -47,6 +47,18 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// Why single precision, and so a GPU, cannot draw this picture, as a sentence for a warning; none if it can. It follows from the size of the
+    /// film, too.
+    pub fn blurred_because(&self) -> Option<String> {
+        self.sensor.is_beyond_single_precision(&self.film, self.world_bounds()).then(|| {
+            format!(
+                "{}: a pixel is smaller than what single precision tells apart at these distances and coordinates, so that a GPU's picture is \
+                 blurred or shifted: take --backend cpu, or bring the scene nearer to the camera and to the origin",
+                self.path.display()
+            )
+        })
+    }
+
     /// Triangles over all instances.
     pub fn triangle_count(&self) -> u64 {
         self.objects.iter().map(|o| self.meshes[o.mesh as usize].triangles.len() as u64).sum()

@@ -192,3 +192,17 @@ fn by_chance_alone() {
     says_nothing(&scene);
     assert!(scene.dark_because().is_some());
 }
+
+/// In a white room paths have ten thousand bounces, of which the search wants four.
+#[test]
+fn the_search_does_not_follow_paths_to_their_end() {
+    let mut scene = empty(8, 8);
+    add(&mut scene, icosphere(2), matte(Vec3::ONE), Affine3A::from_scale(Vec3::splat(3.0)));
+    add(&mut scene, icosphere(1), mirror(), at(1.0, 0.0, -1.0, Vec3::splat(0.3)));
+    scene.luminaires = vec![Luminaire::Point { position: Vec3::Y, intensity: Vec3::ONE }];
+    let reference = Reference::new(&scene);
+    assert!((0..64).all(|pixel| reference.first_vertices(pixel, 0, 4).len() <= 4));
+    let start = std::time::Instant::now();
+    lost_light(&scene);
+    assert!(start.elapsed().as_secs_f64() < 5.0, "some milliseconds are enough");
+}

@@ -58,6 +58,16 @@ fn unit() -> String {
     corners(UNIT.0, UNIT.1)
 }
 
+/// The faces of the unit box, one of them with a vertex more, at the middle of an edge but for `off`.
+fn middle(off: f32) -> String {
+    let cube = faces(1);
+    format!("v 0.5 {off} 0\n")
+        + &written(&cube[1..2])
+        + &written(&cube[3..])
+        + "f 1 9 6\nf 9 2 6\nf 1 6 5\n"
+        + &written(&cube[..1])
+}
+
 #[test]
 fn closed_bodies_are_not_warned_of() {
     let cube = faces(1);
@@ -71,6 +81,8 @@ fn closed_bodies_are_not_warned_of() {
     silent(&(unit() + &written(&cube[..5]) + "usemtl lid\n" + &written(&cube[5..])));
     // Two boxes that share an edge.
     silent(&(unit() + &corners([1.0, 1.0, 0.0], [2.0, 2.0, 1.0]) + &written(&cube) + &written(&faces(9))));
+    // A vertex in the middle of an edge, on one side alone.
+    silent(&(unit() + &middle(0.0)));
     // A hollow: inwards, within glass.
     let hollow = reversed(&faces(9));
     silent(&(unit() + &corners([0.25; 3], [0.75; 3]) + &written(&cube) + &written(&hollow)));
@@ -130,13 +142,8 @@ fn bodies_that_are_not_closed_are_named() {
     // A pane with two sides in one place.
     let pane = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\nf 1 4 3 2\n";
     named(pane, &["4 faces that lie on each other", "thin = true"]);
-    // An edge with a vertex in its middle on one side alone.
-    let middle = "v 0.5 0 0\n".to_owned()
-        + &written(&cube[1..2])
-        + &written(&cube[3..])
-        + "f 1 9 6\nf 9 2 6\nf 1 6 5\n"
-        + &written(&cube[..1]);
-    named(&(unit() + &middle), &["3 open edges"]);
+    // A vertex beside the middle of an edge, on one side alone: a gap.
+    named(&(unit() + &middle(0.01)), &["3 open edges"]);
     // A pane in a wall.
     named(
         "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\nf 1 2 3 4\nusemtl lid\nf 2 5 6 3\n",

@@ -92,3 +92,25 @@ fn a_scene_file_can_leave_them_out() {
     let scene = obj(text).with("scene.toml", file).load("scene.toml");
     assert_eq!(scene.meshes.iter().map(|mesh| mesh.colours.len()).collect::<Vec<_>>(), [3, 0]);
 }
+
+/// A material without `Kd` is white under colours and grey elsewhere, also where meshes with and without colours share it, and where an object has it.
+#[test]
+fn a_shared_material_is_white_under_colours_alone() {
+    let plain = "mtllib m.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    let painted = "mtllib m.mtl\nusemtl m\nv 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0\nf 1 2 3\n";
+    let object = |file: &str, more: &str| format!("[[object]]\nmesh = \"{file}.obj\"\n{more}");
+    let text = "[[material]]\nname = \"own\"\nexponent = 5\n".to_owned()
+        + &object("painted", "")
+        + &object("plain", "translate = [0, 0, 1]\n")
+        + &object("painted", "translate = [0, 0, 2]\nvertex_colours = false\n")
+        + &object("painted", "translate = [0, 0, 3]\nmaterial = \"own\"\n")
+        + &object("plain", "translate = [0, 0, 4]\nmaterial = \"own\"\n");
+    let files = Folder::new().with("m.mtl", "newmtl m\nNs 5\n").with("plain.obj", plain).with("painted.obj", painted);
+    let scene = files.with("scene.toml", format!("{text}{LIGHT}")).load("scene.toml");
+    let albedo = |object: &luminaire::scene::Object| {
+        let mesh = &scene.meshes[object.mesh as usize];
+        scene.materials[object.material.unwrap_or(mesh.triangles[0].material) as usize].lambert.x
+    };
+    let found: Vec<f32> = scene.objects.iter().map(albedo).collect();
+    assert_eq!(found, [1.0, 0.8, 0.8, 1.0, 0.8]);
+}

@@ -214,21 +214,21 @@ fn luminaires_that_are_never_met_are_dark() {
 fn cameras_beyond_single_precision_are_named() {
     let with = |sensor: &str, object: &str| {
         let text = format!("{sensor}{LIGHT}[[object]]\nmesh = \"mesh.obj\"\n[[object]]\nmesh = \"mesh.obj\"\n{object}");
-        obj(TRIANGLE).with("scene.toml", text).load("scene.toml").warnings
+        obj(TRIANGLE).with("scene.toml", text).load("scene.toml").blurred_because()
     };
     let far = "[sensor]\nposition = [0, 0, 7e5]\ntarget = [0.2, 0.2, 0]\nfov = 5e-5\n";
-    assert_eq!(with(far, ""), Vec::<String>::new());
-    let beside = with(far, "translate = [1, 0, 7e5]\n");
-    assert!(beside.len() == 1 && beside[0].contains("single precision"), "{beside:?}");
+    assert_eq!(with(far, ""), None);
+    let beside = with(far, "translate = [1, 0, 7e5]\n").expect("a warning");
+    assert!(beside.contains("single precision"), "{beside}");
     let away = "[sensor]\nkind = \"orthographic\"\nposition = [5e6, 0, 5]\ntarget = [5e6, 0, 0]\nheight = 2\n";
     let moved = with(away, "translate = [5e6, 0, 0]\n");
-    assert!(moved.len() == 1 && moved[0].contains("single precision"), "{moved:?}");
+    assert!(moved.is_some(), "no digits are left");
     for near in [
         SENSOR,
         "[sensor]\nposition = [0.5, 0.5, 0]\ntarget = [0.5, 0.5, -1]\nfov = 90\n",
         "[sensor]\nposition = [0.5, 0.5, 3000]\ntarget = [0.5, 0.5, 0]\nfov = 0.05\n",
         "[sensor]\nkind = \"orthographic\"\nposition = [0, 0, 1]\ntarget = [0, 0, 0]\nheight = 0.001\n",
     ] {
-        assert_eq!(with(near, "translate = [30, 0, 20]\n"), Vec::<String>::new(), "{near}");
+        assert_eq!(with(near, "translate = [30, 0, 20]\n"), None, "{near}");
     }
 }

@@ -83,6 +83,8 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     options.estimator.apply(&mut scene)?;
     scene.settings.seed = options.seed.unwrap_or(scene.settings.seed);
     scene.settings.exposure = options.exposure.unwrap_or(scene.settings.exposure);
+    let blurred = scene.blurred_because();
+    scene.warnings.extend(blurred);
     let lost = lost_light(&scene);
     scene.warnings.extend(lost);
     scene.warnings.iter().for_each(warn);

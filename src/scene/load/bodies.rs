@@ -13,6 +13,8 @@ use std::f64::consts::{PI, TAU};
 const SAME_INDEX: f64 = 0.02;
 /// Faces that leave an edge in directions that differ by less, in radian, lie on each other.
 const SAME_ANGLE: f64 = 1e-5;
+/// Edges without a partner of which it is found out whether corners of other faces lie on them: each is held against the ends of all.
+const MOST_SPLIT: usize = 4096;
 /// Bodies that are inside out of which it is found out whether they are hollows in another: one at a time costs all triangles.
 const MOST_HOLLOWS: usize = 16;
 
@@ -162,18 +164,12 @@ impl Glass {
             edges.extend([(a, b), (b, c), (c, a)].map(|(a, b)| (a.min(b), a.max(b), a < b, number)));
         }
         edges.sort_unstable();
+        self.split(&welded.places, &mut edges);
         let mut parents: Vec<u32> = (0..self.faces.len() as u32).collect();
         let mut faulty = Vec::new();
         let mut doubled = HashSet::new();
         for edge in edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
-            let around: f64 = edge
-                .iter()
-                .map(
-                    |&(.., ahead, face)| {
-                        if ahead { self.faces[face as usize].index } else { -self.faces[face as usize].index }
-                    },
-                )
-                .sum();
+            let around = self.around(edge);
             if around.abs() > SAME_INDEX {
                 faulty.push((edge[0].0, edge[0].1, edge.len(), edge[0].3));
             }
@@ -216,6 +212,56 @@ impl Glass {
         }
     }
 
+    /// Cuts edges where the corner of another face lies on them: a large face may border on several small ones, as CAD programs write them.
+    fn split(&self, places: &[Vec3], edges: &mut Vec<Edge>) {
+        let lonely =
+            edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).filter(|edge| self.around(edge).abs() > SAME_INDEX);
+        let lonely: HashSet<(u32, u32)> = lonely.map(|edge| (edge[0].0, edge[0].1)).collect();
+        if lonely.is_empty() || lonely.len() > MOST_SPLIT {
+            return;
+        }
+        let place = |vertex: u32| places[vertex as usize].as_dvec3();
+        let ends: HashSet<u32> = lonely.iter().flat_map(|&(a, b)| [a, b]).collect();
+        let mut between: HashMap<(u32, u32), Vec<u32>> = HashMap::new();
+        for &(a, b) in &lonely {
+            let (start, along) = (place(a), place(b) - place(a));
+            let length = along.length();
+            // Where a corner was to lie on the edge, its coordinates were rounded.
+            let rounding = 4.0 * f64::from(f32::EPSILON) * place(a).abs().max(place(b).abs()).max_element();
+            let near = rounding + 1e-6 * length;
+            let mut on: Vec<(f64, u32)> = Vec::new();
+            for &vertex in &ends {
+                let at = (place(vertex) - start).dot(along) / length;
+                let off = (start + at / length * along).distance(place(vertex));
+                if at > near && at < length - near && off <= near {
+                    on.push((at, vertex));
+                }
+            }
+            if !on.is_empty() {
+                on.sort_by(|a, b| a.0.total_cmp(&b.0));
+                between.insert((a, b), on.into_iter().map(|(_, vertex)| vertex).collect());
+            }
+        }
+        let mut pieces = Vec::new();
+        edges.retain(|&(a, b, ahead, face)| {
+            let Some(between) = between.get(&(a, b)) else { return true };
+            let mut from = a;
+            for &to in between.iter().chain([&b]) {
+                pieces.push((from.min(to), from.max(to), ahead == (from < to), face));
+                from = to;
+            }
+            false
+        });
+        edges.extend(pieces);
+        edges.sort_unstable();
+    }
+
+    /// The logarithm of what the indices that are passed on the way around an edge multiply to.
+    fn around(&self, edge: &[Edge]) -> f64 {
+        let index = |face: u32| self.faces[face as usize].index;
+        edge.iter().map(|&(.., ahead, face)| if ahead { index(face) } else { -index(face) }).sum()
+    }
+
     /// Those of the faces at an edge that lie on each other there: they leave it in one direction.
     fn on_each_other(&self, places: &[Vec3], edge: &[Edge]) -> Vec<u32> {
         let place = |vertex: u32| places[vertex as usize].as_dvec3();
@@ -224,14 +270,10 @@ impl Glass {
         let (x, y) = along.any_orthonormal_pair();
         let mut angles: Vec<(f64, u32)> = Vec::with_capacity(edge.len());
         for &(.., face) in edge {
-            let [p, q, r] = self.faces[face as usize].corners;
-            let opposite = if p != a && p != b {
-                p
-            } else if q != a && q != b {
-                q
-            } else {
-                r
-            };
+            // The corner that is farthest from the edge, which may be a part of the face's own.
+            let off = |corner: &u32| along.cross(place(*corner) - place(a)).length_squared();
+            let corners = self.faces[face as usize].corners;
+            let opposite = corners.into_iter().max_by(|p, q| off(p).total_cmp(&off(q))).expect("three corners");
             let away = place(opposite) - place(a);
             angles.push((y.dot(away).atan2(x.dot(away)), face));
         }

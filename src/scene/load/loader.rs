@@ -35,8 +35,8 @@ pub(super) struct Loader {
     places: Vec<FilePlace>,
     /// By file and how it was read.
     mesh_files: HashMap<(PathBuf, obj::Reading), u32>,
-    /// The fallback of meshes with coloured vertices, if there are any.
-    coloured_fallback: Option<u32>,
+    /// By material, the one that meshes with coloured vertices show instead.
+    coloured: HashMap<u32, u32>,
     libraries: HashMap<PathBuf, HashMap<String, u32>>,
 }
 
@@ -62,7 +62,7 @@ impl Loader {
             without_uv: Vec::new(),
             places: Vec::new(),
             mesh_files: HashMap::new(),
-            coloured_fallback: None,
+            coloured: HashMap::new(),
             libraries: HashMap::new(),
         }
     }
@@ -87,7 +87,7 @@ impl Loader {
         }
         let mut missing = Vec::new();
         let coloured = !mesh.colours.is_empty();
-        let fallback = if coloured { self.coloured_fallback() } else { 0 };
+        let fallback = if coloured { self.coloured(0) } else { 0 };
         // Entry 0 is for triangles before the first usemtl.
         let mut material_of = vec![fallback];
         for (name, line) in &materials {
@@ -98,7 +98,7 @@ impl Loader {
             material_of.push(index.unwrap_or(fallback));
         }
         if coloured {
-            material_of.iter().for_each(|index| self.drafts[*index as usize].coloured = true);
+            material_of.iter_mut().for_each(|index| *index = self.coloured(*index));
         }
         if let Some((_, line)) = missing.first().filter(|_| first) {
             let names = listed(missing.iter().map(|(name, _)| name.as_str()));
@@ -124,7 +124,8 @@ impl Loader {
     pub(super) fn material(&mut self, mesh: u32, name: &str) -> Option<u32> {
         let own = self.named[mesh as usize].get(name).copied();
         let any = || self.drafts.iter().position(|draft| draft.name == name).map(|index| index as u32);
-        own.or_else(any).or_else(|| self.define(name))
+        let index = own.or_else(any).or_else(|| self.define(name))?;
+        Some(if self.meshes[mesh as usize].colours.is_empty() { index } else { self.coloured(index) })
     }
 
     /// Moves the scene to where single precision can hold it; see [`far::settle`].
@@ -132,11 +133,17 @@ impl Loader {
         far::settle(&mut self.meshes, &mut self.places, objects, to_world, &mut self.warnings)
     }
 
-    /// The material of triangles of coloured meshes that have no other: white where the plain fallback is grey.
-    fn coloured_fallback(&mut self) -> u32 {
-        *self.coloured_fallback.get_or_insert_with(|| {
-            self.drafts.push(Draft::named("default"));
-            self.drafts.len() as u32 - 1
+    /// A material as meshes with coloured vertices show it: where nobody states a diffuse albedo it is white, not grey.
+    fn coloured(&mut self, index: u32) -> u32 {
+        let draft = &self.drafts[index as usize];
+        if draft.coloured || draft.diffuse.is_some() {
+            return index;
+        }
+        let number = self.drafts.len() as u32;
+        let coloured = Draft { coloured: true, ..draft.clone() };
+        *self.coloured.entry(index).or_insert_with(|| {
+            self.drafts.push(coloured);
+            number
         })
     }
 
@@ -154,11 +161,12 @@ impl Loader {
         let shown = self.shown(objects);
         let changes: HashMap<&str, usize> = (0..).zip(&self.overrides).map(|(i, change)| (&*change.name, i)).collect();
         let mut known = vec![false; self.overrides.len()];
+        let fallbacks = [Some(0), self.coloured.get(&0).copied()];
         for (index, draft) in self.drafts.iter_mut().enumerate() {
             if let Some(&change) = changes.get(&*draft.name) {
                 draft.overlay(&self.overrides[change]);
                 // The fallback is always there: what changes it changes something only where it is seen.
-                known[change] |= index > 0 || shown[0];
+                known[change] |= !fallbacks.contains(&Some(index as u32)) || shown[index];
             }
         }
         for (change, known) in self.overrides.iter().zip(known) {

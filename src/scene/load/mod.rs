@@ -60,13 +60,6 @@ pub fn load(path: &Path) -> Result<Scene> {
         let message = format!("a coordinate of {largest:e} is too large; scale the scene to stay within 1e18");
         return Err(Error::scene(path, message));
     }
-    if scene.sensor.is_beyond_single_precision(&scene.film, (low, high)) {
-        scene.warnings.push(format!(
-            "{}: a pixel is smaller than what single precision tells apart at these distances and coordinates, so that a GPU's picture is \
-             blurred or shifted: take --backend cpu, or bring the scene nearer to the camera and to the origin",
-            path.display()
-        ));
-    }
     Ok(scene)
 }
 

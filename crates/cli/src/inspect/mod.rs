@@ -50,6 +50,8 @@ pub struct Options {
 /// Loads a scene and prints what is in it.
 pub fn run(options: &Options) -> Result<ExitCode> {
     let mut scene = scene::load(&options.scene)?;
+    let blurred = scene.blurred_because();
+    scene.warnings.extend(blurred);
     let lost = lost_light(&scene);
     scene.warnings.extend(lost);
     FilmSize { width: options.width, height: options.height, largest: LARGEST_SIDE }.apply(&mut scene.film);

@@ -61,6 +61,8 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     seconds.load = start.elapsed().as_secs_f64();
     outputs.check(scene.files.iter().map(|path| ("a file of the scene", &**path)))?;
     change(&mut scene, options)?;
+    let blurred = scene.blurred_because();
+    scene.warnings.extend(blurred);
     let lost = lost_light(&scene);
     let lacks_light = !lost.is_empty();
     scene.warnings.extend(lost);
