@@ -130,3 +130,30 @@ fn what_single_precision_cannot_hold_is_said() {
     // What has no area in the file has none for another reason.
     warned(&obj(format!("{TRIANGLE}f 1 1 2\n")).load("mesh.obj"), &["1 zero-area"]);
 }
+
+/// A file in feet, brought to metres and to its own origin by the object: a factor of single precision would move it by centimetres.
+#[test]
+fn factors_and_turns_of_far_meshes_keep_their_digits() {
+    let mesh = "v 4075539.53 931735.27 0\nv 4075540.53 931735.27 0\nv 4075539.53 931736.27 0\nf 1 2 3\n";
+    let at = |object: &str| {
+        let text = format!("{SENSOR}{LIGHT}{OBJECT}{object}");
+        obj(mesh).with("scene.toml", text).load("scene.toml").world_bounds()
+    };
+    let (dx, dy) = (4_075_539.53f64 * 0.3048, 931_735.27f64 * 0.3048);
+    for object in [
+        format!("scale = 0.3048\ntranslate = [{}, {}, 0]\n", -dx, -dy),
+        format!("matrix = [[0.3048, 0, 0, {}], [0, 0.3048, 0, {}], [0, 0, 0.3048, 0]]\n", -dx, -dy),
+    ] {
+        let (low, high) = at(&object);
+        assert!(
+            low.abs().max_element() < 1e-6 && (high - DVec3::new(0.3048, 0.3048, 0.0)).length() < 1e-6,
+            "{low} {high}"
+        );
+    }
+    // Turned by 33 degrees about z, then back to where its first corner is the origin.
+    let (sin, cos) = 33f64.to_radians().sin_cos();
+    let (x, y) = (4_075_539.53 * cos - 931_735.27 * sin, 4_075_539.53 * sin + 931_735.27 * cos);
+    let (low, high) = at(&format!("rotate = [0, 0, 33]\ntranslate = [{}, {}, 0]\n", -x, -y));
+    let expected = (DVec3::new(-sin, 0.0, 0.0), DVec3::new(cos, sin.max(cos), 0.0));
+    assert!((low - expected.0).length() < 1e-3 && high.x - expected.1.x < 1e-3, "{low} {high}");
+}

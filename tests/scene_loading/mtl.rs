@@ -296,3 +296,29 @@ fn names_of_mtl_files_and_materials_may_hold_blanks() {
         .collect();
     assert_eq!(albedos, [0.1, 0.2]);
 }
+
+/// Maya writes `illum 4` and `Ni 1.00` for everything: black rubber and lamps do not become invisible.
+#[test]
+fn glass_that_nobody_could_see_is_opaque() {
+    for (mtl, lambert, emission) in [
+        ("Kd 0 0 0\nTf 1 1 1\nNi 1.00\nillum 4", 0.0, 0.0),
+        ("Kd 0 0 0\nTf 0 0 0\nNi 1\nillum 7\nd 1", 0.0, 0.0),
+        ("Ks 0 0 0\nNi 1\nillum 9", 0.8, 0.0),
+        ("Kd 0 0 0\nKe 1 1 1\nNi 1\nillum 4", 0.0, 1.0),
+    ] {
+        let (m, warnings) = read(mtl);
+        assert_eq!((m.lambert.x, m.emission.x, m.opacity), (lambert, emission, 1.0), "{mtl}");
+        assert_eq!((m.transmission, m.reflection), (Vec3::ZERO, Vec3::ZERO), "{mtl}");
+        assert!(warnings.len() == 1 && warnings[0].contains("illum"), "{warnings:?}");
+    }
+    assert_eq!(read("Kd 0 0 0\nTf .5 1 1\nNi 1\nillum 4").0.transmission, Vec3::new(0.5, 1.0, 1.0), "a filter");
+}
+
+/// Exporters write `Ks 0 0 0` and `Ke 0 0 0` for everything: they say nothing of the diffuse albedo.
+#[test]
+fn zeros_describe_nothing() {
+    for mtl in ["Ks 0 0 0\nNs 10\nillum 2", "Ke 0 0 0", "Ks 0 0 0\nKe 0 0 0"] {
+        assert_eq!(read(mtl).0.lambert, Vec3::splat(0.8), "{mtl}");
+    }
+    assert_eq!(read("Ks .5 .5 .5\nNs 10").0.lambert, Vec3::ZERO);
+}

@@ -145,9 +145,8 @@ impl Draft {
         // Light that goes through a surface is also reflected by it, unless somebody says otherwise.
         let entered = if transmission == Vec3::ZERO { Vec3::ZERO } else { Vec3::ONE };
         let reflection = self.reflection.unwrap_or(entered);
-        let described = [glossy, emission, reflection, transmission].iter().any(|colour| *colour != Vec3::ZERO)
-            || self.glossy.is_some()
-            || self.emission.is_some();
+        // A zero describes nothing: exporters write `Ks 0 0 0` and `Ke 0 0 0` for everything.
+        let described = [glossy, emission, reflection, transmission].iter().any(|colour| *colour != Vec3::ZERO);
         let lambert = self.diffuse.unwrap_or(match (self.maps.diffuse.file(), described) {
             (Some(_), _) => Vec3::ONE,
             (None, true) => Vec3::ZERO,

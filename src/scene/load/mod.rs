@@ -76,7 +76,10 @@ fn what_else(path: &Path, ending: &str) -> String {
     if path.is_dir() {
         let entries = std::fs::read_dir(path).into_iter().flatten().flatten();
         let mut scenes: Vec<_> = entries.map(|entry| entry.path()).filter(|path| is_scene(path)).collect();
-        scenes.sort();
+        // A scene file knows its camera and its light.
+        scenes.sort_by_key(|path| {
+            (!path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")), path.clone())
+        });
         return match scenes.first() {
             Some(scene) => format!("; this is a folder, in which there is {}", scene.display()),
             None => "; this is a folder".into(),

@@ -333,12 +333,20 @@ impl Current {
     }
 
     /// Whether `illum`, which is one of those of glass, makes glass. Many exporters write one of them for everything, so that a material with a
-    /// colour is glass only if it has an index of refraction, too, and nothing says how much of it is there.
+    /// colour is glass only if it has an index of refraction, too, and nothing says how much of it is there; and a black one is not if its index is 1.
     fn is_glass(&mut self, illum: u32) -> bool {
         let draft = &self.draft;
         let coloured = draft.maps.diffuse.file().is_some() || draft.diffuse.is_some_and(|kd| kd != Vec3::ZERO);
         if !coloured {
-            return true;
+            // Clear glass that bends nothing cannot be seen, and nobody means that: black rubber, and lamps, are written so.
+            let clear = self.filter.is_none_or(|tf| tf == Vec3::ZERO || tf == Vec3::ONE);
+            let unseen = clear && self.refraction.is_some_and(|ni| (ni - 1.0).abs() <= 1e-3);
+            if unseen {
+                self.shared.push(format!(
+                    "illum {illum} asks for glass, but with Ni 1 and without a tint (Tf) nothing could be seen of it: it is taken as opaque"
+                ));
+            }
+            return !unseen;
         }
         let transparency = self.transparency.filter(|tr| *tr < 1.0).map_or(1.0, |tr| 1.0 - tr);
         let dissolves = self.dissolve.unwrap_or(transparency) < 1.0 || draft.maps.opacity.file().is_some();

@@ -143,17 +143,17 @@ impl File<'_> {
         let to_world = match matrix {
             Some(Matrix(rows)) => {
                 let column = |c: usize| DVec3::new(rows[0][c].0, rows[1][c].0, rows[2][c].0);
-                let rounded = |c: usize| column(c).as_vec3().as_dvec3();
-                DAffine3 { matrix3: DMat3::from_cols(rounded(0), rounded(1), rounded(2)), translation: column(3) }
+                DAffine3 { matrix3: DMat3::from_cols(column(0), column(1), column(2)), translation: column(3) }
             }
             None => {
-                let angles = rotate.unwrap_or(zero).rounded().as_dvec3();
+                // Far from the origin every digit of a turn and of a factor counts, not of the place alone.
+                let angles = rotate.unwrap_or(zero).0;
                 let [x, y, z] = angles.to_array().map(f64::to_radians);
                 let rotation = DQuat::from_rotation_z(z) * DQuat::from_rotation_y(y) * DQuat::from_rotation_x(x);
                 let scale = match scale {
                     None => DVec3::ONE,
-                    Some(Scale::Even(scale)) => DVec3::splat(scale.0.into()),
-                    Some(Scale::Uneven(scale)) => scale.rounded().as_dvec3(),
+                    Some(Scale::Even(scale)) => DVec3::splat(scale.0),
+                    Some(Scale::Uneven(scale)) => scale.0,
                 };
                 let translation = translate.unwrap_or(zero).0;
                 DAffine3::from_scale_rotation_translation(scale, rotation, translation)

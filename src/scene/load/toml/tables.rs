@@ -1,8 +1,8 @@
 //! The tables of a scene file, as `scenes/README.md` describes them.
 
 use super::values::{
-    Angle, Blades, Bounces, Colour, Eta, Exponent, Exposure, FilterRadius, Finite, Fov, MapOffset, MapScale, Matrix,
-    NotNegative, Pixels, Positive, Probability, Samples, Triple, Unit,
+    Angle, Blades, Bounces, Colour, Eta, Exact, Exponent, Exposure, FilterRadius, Finite, Fov, MapOffset, MapScale,
+    Matrix, NotNegative, Pixels, Positive, Probability, Samples, Triple, Unit,
 };
 use crate::scene::{AreaSampling, Directions, Extinction, Filter, LightSampling, Sampler};
 use ::toml::Spanned;
@@ -115,7 +115,7 @@ pub(super) struct ObjectTable {
 #[derive(Deserialize)]
 #[serde(untagged, expecting = "expected a number or three numbers [x, y, z], all finite")]
 pub(super) enum Scale {
-    Even(Finite),
+    Even(Exact),
     Uneven(Triple),
 }
 
