@@ -1,5 +1,6 @@
 //! From a path to a [`Scene`].
 
+mod alike;
 mod bare_mesh;
 mod bodies;
 mod environment;
@@ -48,6 +49,7 @@ pub fn load(path: &Path) -> Result<Scene> {
     scene.warnings.extend(bodies::warnings(&scene));
     let merged = scene.merge_overlapping_lamps();
     scene.warnings.extend(merged);
+    alike::shorten(&mut scene.warnings);
     for warning in &mut scene.warnings {
         // Names come from files, and a terminal would obey.
         if warning.contains(char::is_control) {
