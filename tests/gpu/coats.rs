@@ -41,7 +41,7 @@ fn a_white_base_under_a_clear_coat_is_no_more_than_white() {
         on_every_tracer(&scene, |backend, tracer| {
             let traced = trace(tracer, &scene, SAMPLES);
             let count = f64::from(12 * 12 * SAMPLES);
-            let mean = traced.sums.iter().map(|sum| f64::from(sum.radiance[1])).sum::<f64>() / count;
+            let mean = traced.sums.iter().map(|sum| sum.radiance[1]).sum::<f64>() / count;
             // Samples are 0 or 1 over the share of the sphere's cosines that the coat lets through.
             let error = 4.0 * (1.0 / coat_transmittance(eta.into()) - 1.0).max(0.01).sqrt() / count.sqrt();
             let what = format!("{triangles} triangles, flat: {flat}, eta {eta}, {backend}: {mean} +- {error}");
