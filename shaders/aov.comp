@@ -44,13 +44,12 @@ void main() {
         Material material = material_at(s);
         vec3 base = material.lambert;
         if (GLOSSY) base += material.glossy;
-        if (is_coated(material)) {
-            // As from straight above.
-            base += material.transmission;
+        if (DIELECTRICS && material.eta != MIRROR && material.transmission == vec3(0.0)) {
+            // As from straight above; on a black base too, which a map may have in places.
             albedo += base + material.reflection * fresnel(material.eta, 1.0) * (1.0 - base);
         } else {
             albedo += base;
-            // Of a dielectric either the one or the other.
+            // Of glass either the one or the other.
             if (IMPULSES) albedo += max(material.reflection, DIELECTRICS ? material.transmission : vec3(0.0));
         }
         normal += s.shading_normal;

@@ -10,11 +10,11 @@ float glossy_share(Material material) {
 
 // What a coat makes of the base's lobes (Surfel::coat in src/reference/bsdf.rs): a factor to Lambert's, and one to the glossy one.
 void coat(Surfel s, Material material, vec3 wo, vec3 wi, out vec3 lambert, out vec3 glossy) {
-    Impulses i = impulses(s, material, wo);
-    vec3 outward = 1.0 - i.reflected;
-    vec3 inward = 1.0 - impulses(s, material, wi).reflected;
-    float average = material.coat_transmittance / (i.eta == material.eta ? 1.0 : material.eta * material.eta);
-    lambert = outward * inward / (1.0 - material.reflection * (1.0 - average));
+    vec3 outward = 1.0 - material.reflection * fresnel(material.eta, min(dot(s.shading_normal, wo), 1.0));
+    vec3 inward = 1.0 - material.reflection * fresnel(material.eta, min(dot(s.shading_normal, wi), 1.0));
+    // Written so that it does not cancel where nearly all is reflected.
+    vec3 average = (1.0 - material.reflection) + material.reflection * material.coat_transmittance;
+    lambert = outward * inward / average;
     glossy = min(outward, inward);
 }
 

@@ -31,7 +31,7 @@ vec3 reflect_direction(vec3 wo, vec3 n) { return 2.0 * dot(wo, n) * n - wo; }
 struct Impulses {
     vec3 reflected;       // albedo
     vec3 transmitted;     // albedo
-    vec3 normal;          // the one that both directions go by
+    vec3 normal;          // the one that both directions go by; of glass, the reflectance too
     float eta;            // index on the other side over that on the side of wo; 0 for a mirror
     float probability;    // with which a path takes an impulse
 };
@@ -40,7 +40,7 @@ float mean(vec3 v) { return (v.x + v.y + v.z) * (1.0 / 3.0); }
 
 // Whether what scatters lies under a smooth dielectric, not beside it.
 bool is_coated(Material material) {
-    if (!COATS || material.eta == MIRROR || material.reflection == vec3(0.0) || (THIN && material.thin != 0u)) return false;
+    if (!COATS || material.eta == MIRROR || material.reflection == vec3(0.0) || material.transmission != vec3(0.0)) return false;
     return material.lambert != vec3(0.0) || (GLOSSY && material.glossy != vec3(0.0));
 }
 
@@ -51,19 +51,20 @@ Impulses impulses(Surfel s, Material material, vec3 wo) {
     if (GLOSSY) rest += material.glossy;
     i.reflected = material.reflection;
     bool thin = THIN && material.thin != 0u;
+    bool opaque = material.transmission == vec3(0.0);
     if (DIELECTRICS && material.eta != MIRROR) {
         // A sheet lets light through as if it were not there, and nobody is inside of what transmits nothing.
-        i.eta = thin ? 1.0 : s.front || material.transmission == vec3(0.0) ? material.eta : 1.0 / material.eta;
+        i.eta = thin ? 1.0 : s.front || opaque ? material.eta : 1.0 / material.eta;
     }
-    // A direction on the wrong side of the triangle, or all reflected: the triangle's own normal instead. Total reflection about interpolated
-    // normals would keep paths for ever (src/reference/impulse.rs).
+    // A direction on the wrong side of the triangle, or all reflected by glass: the triangle's own normal instead. Total reflection about
+    // interpolated normals would keep paths for ever (src/reference/impulse.rs).
     if (VERTEX_NORMALS) {
         bool wrong = dot(reflect_direction(wo, i.normal), s.geometric_normal) <= 0.0;
-        if (DIELECTRICS && i.eta > 0.0) wrong = wrong || dot(refract_direction(wo, i.normal, i.eta), s.geometric_normal) >= 0.0;
+        if (DIELECTRICS && !opaque) wrong = wrong || dot(refract_direction(wo, i.normal, i.eta), s.geometric_normal) >= 0.0;
         if (wrong) i.normal = s.geometric_normal;
     }
     if (DIELECTRICS && i.eta > 0.0) {
-        float f = fresnel(thin ? material.eta : i.eta, min(dot(wo, i.normal), 1.0));
+        float f = fresnel(thin ? material.eta : i.eta, min(dot(wo, opaque ? s.shading_normal : i.normal), 1.0));
         if (thin) f = thin_reflectance(f);
         i.reflected *= f;
         i.transmitted = material.transmission * (1.0 - f);

@@ -35,7 +35,7 @@ layout(set = 0, binding = 8, std430) buffer Dropped {
     uvec2 samples[];
 } dropped;
 
-// The twin is in src/film.rs.
+// The twin is in src/film/batch.rs.
 const float MOST_RADIANCE = 1e36;
 
 void main() {

@@ -7,7 +7,7 @@ const float SURE_THROUGHPUT = 0.4;
 float survival(Material material) {
     vec3 albedo = material.lambert;
     if (GLOSSY) albedo += material.glossy;
-    if (is_coated(material)) albedo = max(material.reflection, albedo + material.transmission);
+    if (is_coated(material)) albedo = max(material.reflection, albedo);
     else if (IMPULSES) albedo += max(material.reflection, DIELECTRICS ? material.transmission : vec3(0.0));
     return min(largest(albedo), 1.0);
 }

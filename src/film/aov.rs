@@ -8,7 +8,8 @@ const NOTHING_SEEN: f32 = 1e10;
 /// What the camera rays of one pixel hit first, added up over samples.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct AovSum {
-    /// Albedos: diffuse and glossy, and the larger one of impulse reflection and transmission; of a coated base what goes on from straight above.
+    /// Albedos: diffuse and glossy, and the larger one of impulse reflection and transmission; under a Fresnel mirror that transmits nothing, what
+    /// goes on from straight above.
     pub albedo: [f32; 3],
     /// Distances along the line of sight (not along the ray), in the scene's unit.
     pub depth: f32,

@@ -21,12 +21,11 @@ impl Reference {
             let surfel = self.surfel(&hit, -direction);
             let base = surfel.lambert + surfel.glossy;
             albedo += match surfel.eta {
-                // As from straight above.
-                Some(eta) if surfel.is_coated() => {
-                    let below = base + surfel.transmission;
-                    below + surfel.reflection * fresnel(eta, 1.0) * (DVec3::ONE - below)
+                // As from straight above; on a black base too, which a map may have in places.
+                Some(eta) if surfel.transmission == DVec3::ZERO => {
+                    base + surfel.reflection * fresnel(eta, 1.0) * (DVec3::ONE - base)
                 }
-                // Of a dielectric either the one or the other.
+                // Of glass either the one or the other.
                 Some(_) => base + surfel.reflection.max(surfel.transmission),
                 None => base + surfel.reflection,
             };

@@ -1,7 +1,7 @@
 //! The BSDF without its impulses: its value, its directions and their density, which belong together. Lambert and normalised Blinn-Phong (slide "Surface
 //! Element Class"), under a coat where there is one; how directions are chosen (slides "Inefficient Integration", "More Efficient Integration").
 
-use super::impulse::reflect;
+use super::impulse::{fresnel, reflect};
 use super::surfel::{Surfel, mean};
 use super::warp::{cosine_hemisphere, glossy_half_vector, uniform_hemisphere};
 use crate::scene::Directions;
@@ -32,13 +32,15 @@ impl Surfel {
     /// coat holds back below gets its next chance there (no colour shift: as if the base were white): so Lambert's lobe is `(1 - F(wi)) (1 -
     /// F(wo))` over that average, and scatters `1 - F(wo)` of its albedo, which with `F(wo)`, the mirror, is at most 1. The glossy lobe, which has no
     /// such average, gets the lesser of the two. Both are the same for light that goes the other way. A reflection that is tinted or less than 1
-    /// holds back as much as it reflects, in each channel.
+    /// holds back as much as it reflects, in each channel. `F` is about the shading normal in both directions, as the mirror's is: the average is
+    /// over one hemisphere.
     fn coat(&self, wo: DVec3, wi: DVec3) -> [DVec3; 2] {
-        let Some(index) = self.eta.filter(|_| self.is_coated()) else { return [DVec3::ONE; 2] };
-        let impulses = self.impulses(wo);
-        let (out, into) = (DVec3::ONE - impulses.reflection, DVec3::ONE - self.impulses(wi).reflection);
-        let average = self.coat_transmittance / if impulses.eta == index { 1.0 } else { index * index };
-        [out * into / (DVec3::ONE - self.reflection * (1.0 - average)), out.min(into)]
+        let Some(eta) = self.eta.filter(|_| self.is_coated()) else { return [DVec3::ONE; 2] };
+        let passed = |w: DVec3| DVec3::ONE - self.reflection * fresnel(eta, self.shading_normal.dot(w));
+        let (out, into) = (passed(wo), passed(wi));
+        // One less what the coat reflects on average, written so that it does not cancel where that is nearly all.
+        let average = (DVec3::ONE - self.reflection) + self.reflection * self.coat_transmittance;
+        [out * into / average, out.min(into)]
     }
 
     /// Whether light is scattered in other ways than by impulses, so that light sampling makes sense.

@@ -58,17 +58,22 @@ pub struct Impulses {
 
 impl Surfel {
     /// The impulses towards `wo`. They are about the shading normal, unless one of the two directions would then be on the wrong side
-    /// of the triangle, or a dielectric would reflect all: in that case both directions, and the reflectance, are about the geometric
-    /// normal. Reflectance and transmittance so always add up to 1.
+    /// of the triangle, or glass would reflect all: in that case both directions, and the reflectance, are about the geometric
+    /// normal. Reflectance and transmittance so always add up to 1. Where nothing is transmitted the reflectance, of which a coat leaves the rest to
+    /// its base, stays that about the shading normal: then mirror and base add up to no more than 1.
     ///
     /// Total reflection about interpolated normals would be a trap: such reflections do not preserve the volume of phase space, and paths that
     /// entered a coarse ball of glass would be drawn to its rim and stay there for ever. About the triangles' own normals they leave.
     pub fn impulses(&self, wo: DVec3) -> Impulses {
         let about_shading_normal = self.impulses_about(self.shading_normal, wo);
         let Impulses { reflected, transmitted, .. } = about_shading_normal;
+        let is_reflected = self.geometric_normal.dot(reflected) > 0.0;
+        if self.transmission == DVec3::ZERO {
+            let reflected = if is_reflected { reflected } else { reflect(wo, self.geometric_normal) };
+            return Impulses { reflected, ..about_shading_normal };
+        }
         // Nothing transmitted is the zero vector.
-        let passes = self.eta.is_none() || self.geometric_normal.dot(transmitted) < 0.0;
-        if self.geometric_normal.dot(reflected) > 0.0 && passes {
+        if is_reflected && self.geometric_normal.dot(transmitted) < 0.0 {
             about_shading_normal
         } else {
             self.impulses_about(self.geometric_normal, wo)

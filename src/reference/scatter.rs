@@ -18,7 +18,7 @@ pub const SURE_THROUGHPUT: f64 = 0.4;
 pub fn survival(surfel: &Surfel) -> f64 {
     let base = surfel.lambert + surfel.glossy;
     let albedo = if surfel.is_coated() {
-        surfel.reflection.max(base + surfel.transmission)
+        surfel.reflection.max(base)
     } else {
         base + surfel.reflection.max(surfel.transmission)
     };

@@ -114,7 +114,7 @@ impl Surfel {
 
     /// Whether what scatters lies under a smooth dielectric ([`crate::scene::Material::is_coated`]).
     pub fn is_coated(&self) -> bool {
-        self.eta.is_some() && !self.thin && self.reflection != DVec3::ZERO && self.scatters()
+        self.eta.is_some() && self.transmission == DVec3::ZERO && self.reflection != DVec3::ZERO && self.scatters()
     }
 
     /// Where a ray that leaves in `direction` starts: far enough from the triangle's plane not to hit it again.

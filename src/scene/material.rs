@@ -6,7 +6,7 @@ use glam::Vec3;
 /// Reflection", "Adding Transmission").
 ///
 /// In every channel, each times the largest texel of its map, `lambert + glossy + max(reflection, transmission) <= 1`; for a coated base
-/// ([`Material::is_coated`]) `reflection <= 1` and `lambert + glossy + transmission <= 1`. The loader scales down what exceeds it and warns.
+/// ([`Material::is_coated`]) `reflection <= 1` and `lambert + glossy <= 1`. The loader scales down what exceeds it and warns.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {
     /// The name in the MTL or scene file.
@@ -97,10 +97,10 @@ impl Material {
     }
 
     /// Whether what is diffuse and glossy lies under a smooth dielectric: then it gets, and gives away, what Fresnel does not reflect. A
-    /// mirror without `eta`, and the two sides of a thin sheet, lie beside it instead.
+    /// mirror without `eta`, and what transmits, lie beside it instead.
     pub fn is_coated(&self) -> bool {
         let base = self.lambert != Vec3::ZERO || self.glossy != Vec3::ZERO;
-        base && self.reflection != Vec3::ZERO && self.eta.is_some() && !self.is_sheet()
+        base && self.reflection != Vec3::ZERO && self.eta.is_some() && self.transmission == Vec3::ZERO
     }
 
     /// Whether a ray may pass the surface as if it were not there.

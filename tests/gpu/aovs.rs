@@ -7,6 +7,7 @@ use luminaire::film::{AovSum, Tile};
 use luminaire::picture::Values;
 use luminaire::reference::Reference;
 use luminaire::render::{Tracer, aovs};
+use luminaire::scene::Material;
 use luminaire::scene::build::{add, empty, lamp, matte, quad};
 
 /// A wall three units away that covers the left half of the picture: depth along the line of sight, its normal, its albedo.
@@ -69,6 +70,41 @@ fn first_hits_are_the_references() {
                 .count();
             assert!(differ <= 3, "{} on {}: {differ} pixels differ", scene.path.display(), backend.name());
         });
+    }
+}
+
+/// Plastic is as bright as its base and what the coat reflects from straight above; where a map makes the base black, there is no jump. Nor is
+/// there on what is all coat. Glass has the larger one of its two.
+#[test]
+fn the_albedo_of_plastic_has_no_jump_at_black() {
+    let plastic = Material { reflection: Vec3::ONE, eta: Some(1.5), ..matte(Vec3::ONE) };
+    let glass = Material { transmission: Vec3::splat(0.5), ..matte(Vec3::splat(0.25)) };
+    let glass = Material { reflection: Vec3::splat(0.25), eta: Some(1.5), ..glass };
+    let bare = Material { lambert: Vec3::ZERO, ..plastic.clone() };
+    for (material, texel, expected) in [
+        (&plastic, 0.0f32, 0.04),
+        (&plastic, 1.0 / 256.0, 0.04 + 0.96 / 256.0),
+        (&plastic, 0.5, 0.52),
+        (&bare, 1.0, 0.04),
+        (&glass, 1.0, 0.75),
+    ] {
+        let mut scene = empty(4, 4);
+        let mut wall = quad(Vec3::new(-9.0, -9.0, -3.0), Vec3::new(18.0, 0.0, 0.0), Vec3::new(0.0, 18.0, 0.0));
+        wall.uvs = vec![glam::Vec2::ZERO; wall.positions.len()];
+        scene.textures.push(texture(1, 1, |_, _| [texel, texel, texel, 1.0]).into());
+        let mut material = material.clone();
+        material.maps.lambert = (material.lambert != Vec3::ZERO).then_some(0);
+        add(&mut scene, wall, material, Affine3A::IDENTITY);
+        let behind = quad(Vec3::new(-1.0, -1.0, 5.0), Vec3::X, Vec3::Y);
+        add(&mut scene, behind, lamp([1.0; 3]), Affine3A::IDENTITY);
+        let check = |name: &str, tracer: &mut dyn Tracer| {
+            for sum in aovs(tracer, (4, 4), 4).unwrap().sums {
+                let found = sum.albedo[0] / sum.hits as f32;
+                assert!(sum.hits == 4 && (found - expected).abs() < 1e-5, "{name}, {texel}: {found}, {expected}");
+            }
+        };
+        check("reference", &mut Reference::new(&scene));
+        on_every_backend(|backend| check(backend.name(), &mut backend.tracer(&scene)));
     }
 }
 

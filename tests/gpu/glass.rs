@@ -55,22 +55,22 @@ fn glass() -> Material {
     Material { reflection: Vec3::ONE, transmission: Vec3::ONE, eta: Some(1.5), ..matte(Vec3::ZERO) }
 }
 
-/// A body of glass in white light.
-fn in_white_light(body: Mesh) -> Scene {
+/// A body in white light.
+pub fn in_white_light(body: Mesh, material: Material) -> Scene {
     let mut scene = empty(24, 24);
     scene.sensor = pinhole(Vec3::new(0.4, 1.5, 5.0), Vec3::ZERO, Vec3::Y, 26.0);
     scene.environment = Some(Environment { radiance: Vec3::ONE, image: None, rotation: 0.0 });
-    add(&mut scene, body, glass(), Affine3A::IDENTITY);
+    add(&mut scene, body, material, Affine3A::IDENTITY);
     scene
 }
 
-fn trace(tracer: &mut dyn Tracer, scene: &Scene, samples: u32) -> Traced {
+pub fn trace(tracer: &mut dyn Tracer, scene: &Scene, samples: u32) -> Traced {
     let tile = Tile { x: 0, y: 0, width: scene.film.width, height: scene.film.height };
     tracer.trace(&Batch { tile, samples: 0..samples, group: 1 }).expect("the tracer works")
 }
 
 /// The tracers that are here, the reference first.
-fn on_every_tracer(scene: &Scene, test: impl Fn(&str, &mut dyn Tracer)) {
+pub fn on_every_tracer(scene: &Scene, test: impl Fn(&str, &mut dyn Tracer)) {
     test("reference", &mut Reference::new(scene));
     on_every_backend(|backend| test(backend.name(), &mut backend.tracer(scene)));
 }
@@ -90,9 +90,9 @@ fn smooth_glass_is_white_in_white_light_and_traced_as_fast_as_flat_glass() {
     ];
     for (name, body) in bodies {
         let rays = |traced: &Traced| traced.sums.iter().map(|sum| f64::from(sum.rays.all)).sum::<f64>();
-        let flat_scene = in_white_light(body.clone());
+        let flat_scene = in_white_light(body.clone(), glass());
         let flat = rays(&trace(&mut Reference::new(&flat_scene), &flat_scene, 8));
-        let scene = in_white_light(smooth(body));
+        let scene = in_white_light(smooth(body), glass());
         on_every_tracer(&scene, |backend, tracer| {
             let traced = trace(tracer, &scene, 8);
             assert_eq!(traced.dropped, [], "{name}, {backend}");
@@ -163,7 +163,7 @@ fn a_pane_lets_through_what_two_surfaces_do() {
 /// No pane, however it is placed, makes white light more or less.
 #[test]
 fn panes_are_white_in_white_light() {
-    let mut scene = in_white_light(cube());
+    let mut scene = in_white_light(cube(), glass());
     scene.materials[0].thin = true;
     let mut ball = smooth(ball(5, 8));
     ball.triangles.iter_mut().step_by(3).for_each(|triangle| triangle.vertices.swap(0, 1));

@@ -7,6 +7,7 @@
 mod common;
 
 mod aovs;
+mod coats;
 mod densities;
 mod error_bar;
 mod estimators;

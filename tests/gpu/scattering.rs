@@ -42,7 +42,7 @@ fn without_gloss() -> Vec<Material> {
     ]
 }
 
-/// Lambert under a smooth dielectric: plastic, one with a tinted coat, one that transmits too, seen from both sides.
+/// Lambert under a smooth dielectric: plastic, one with a tinted coat, one of an index below 1; and in glass, which is no coat, seen from both sides.
 fn coated() -> Vec<Material> {
     let grey = Vec3::splat;
     vec![
@@ -54,16 +54,17 @@ fn coated() -> Vec<Material> {
             ..matte(Vec3::ONE)
         },
         Material { reflection: grey(0.5), transmission: grey(0.5), eta: Some(1.5), ..matte(Vec3::new(0.5, 0.3, 0.1)) },
-        Material { reflection: Vec3::ONE, transmission: grey(0.4), eta: Some(1.0 / 1.5), ..matte(grey(0.6)) },
+        Material { reflection: grey(0.4), transmission: grey(0.4), eta: Some(1.0 / 1.5), ..matte(grey(0.6)) },
+        Material { reflection: Vec3::ONE, eta: Some(1.0 / 1.5), ..matte(grey(0.6)) },
     ]
 }
 
-/// Glossy lobes of an exponent: alone, with Lambert, and with impulses too.
+/// Glossy lobes of an exponent: alone, with Lambert, and both under a coat, or in glass for an exponent of 1.
 fn with_gloss(m: f64) -> [Material; 3] {
     let glossy = |glossy: Vec3, base: Material| Material { glossy, exponent: m as f32, ..base };
     let coat = Material {
         reflection: Vec3::new(0.3, 0.2, 0.1),
-        transmission: Vec3::splat(0.3),
+        transmission: Vec3::splat(if m == 1.0 { 0.3 } else { 0.0 }),
         eta: Some(1.5),
         impulse_probability: (m == 20.0).then_some(0.6),
         ..matte(Vec3::splat(0.3))

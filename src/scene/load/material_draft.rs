@@ -250,34 +250,34 @@ impl Draft {
 }
 
 /// Scales the albedos so that no channel reflects and transmits more than it receives. A coat, which reflects the share F, passes the share
-/// 1 - F on to the base and through it: there reflection has a bound of its own, and base and transmission share one.
+/// 1 - F on to the base: there reflection and base have each a bound of their own.
 fn conserve_energy(material: &mut Material, textures: &Textures, warnings: &mut Vec<String>) {
     let largest = |map: Option<u32>| map.map_or(Vec3::ONE, |map| textures.range(map).largest);
     let (lambert_map, glossy_map) = (largest(material.maps.lambert), largest(material.maps.glossy));
     let base = |m: &Material| m.lambert * lambert_map + m.glossy * glossy_map;
     if material.is_coated() {
-        limit(material, [false, true, false], |m| m.reflection.max_element(), warnings);
-        limit(material, [true, false, true], |m| (base(m) + m.transmission).max_element(), warnings);
+        limit(material, [false, true], |m| m.reflection.max_element(), warnings);
+        limit(material, [true, false], |m| base(m).max_element(), warnings);
     } else {
-        limit(material, [true; 3], |m| (base(m) + m.reflection.max(m.transmission)).max_element(), warnings);
+        limit(material, [true; 2], |m| (base(m) + m.reflection.max(m.transmission)).max_element(), warnings);
     }
 }
 
-/// Scales some of the albedos (lambert and glossy; reflection; transmission) so that `sum`, which is linear in them, is at most 1.
-fn limit(material: &mut Material, scaled: [bool; 3], sum: impl Fn(&Material) -> f32, warnings: &mut Vec<String>) {
+/// Scales some of the albedos (lambert and glossy; reflection and transmission) so that `sum`, which is linear in them, is at most 1.
+fn limit(material: &mut Material, scaled: [bool; 2], sum: impl Fn(&Material) -> f32, warnings: &mut Vec<String>) {
     let before = sum(material);
     if before <= 1.0 {
         return;
     }
     let original = material.clone();
     let mut factor = 1.0 / before;
-    let [base, reflected, transmitted] = scaled;
+    let [base, impulses] = scaled;
     let scale = |material: &mut Material, factor: f32| {
         let by = |scaled: bool| if scaled { factor } else { 1.0 };
         material.lambert = original.lambert * by(base);
         material.glossy = original.glossy * by(base);
-        material.reflection = original.reflection * by(reflected);
-        material.transmission = original.transmission * by(transmitted);
+        material.reflection = original.reflection * by(impulses);
+        material.transmission = original.transmission * by(impulses);
     };
     scale(material, factor);
     while sum(material) > 1.0 {
@@ -287,8 +287,7 @@ fn limit(material: &mut Material, scaled: [bool; 3], sum: impl Fn(&Material) -> 
     // Below that it is the rounding of the sum, which nobody needs to hear about.
     if before > 1.000_01 {
         let part = |scaled: bool, albedo: Vec3| if scaled { albedo.max_element() } else { 0.0 };
-        let (reflection, transmission) =
-            (part(reflected, original.reflection), part(transmitted, original.transmission));
+        let (reflection, transmission) = (part(impulses, original.reflection), part(impulses, original.transmission));
         let parts = [
             (part(base, original.lambert), "diffuse"),
             (part(base, original.glossy), "glossy"),
@@ -324,11 +323,13 @@ mod tests {
                 ..Draft::named("m")
             };
             let m = finish(&draft, &mut Vec::new());
-            assert!(m.is_coated() && m.reflection.max_element() <= 1.0, "{m:?}");
-            assert!((m.lambert + m.glossy + m.transmission).max_element() <= 1.0, "{m:?}");
+            assert!(!m.is_coated(), "glass lies beside its base: {m:?}");
+            assert!((m.lambert + m.glossy + m.reflection.max(m.transmission)).max_element() <= 1.0, "{m:?}");
             let ratio = m.lambert.x / x;
             assert!((m.transmission.y - ratio * x).abs() < 1e-6, "all by the same factor: {m:?}");
-            assert!((m.reflection.z - x.min(1.0)).abs() < 1e-6, "not scaled below what it may be: {m:?}");
+            let plastic = finish(&Draft { transmission: None, eta: Some(1.5), ..draft.clone() }, &mut Vec::new());
+            assert!(plastic.is_coated() && (plastic.lambert + plastic.glossy).max_element() <= 1.0, "{plastic:?}");
+            assert!((plastic.reflection.z - x.min(1.0)).abs() < 1e-6, "not scaled below what it may be: {plastic:?}");
             let mirror = finish(&Draft { transmission: None, ..draft }, &mut Vec::new());
             assert!((mirror.lambert + mirror.glossy + mirror.reflection).max_element() <= 1.0, "{mirror:?}");
             let ratio = mirror.lambert.x / x;
@@ -348,8 +349,6 @@ mod tests {
         let mut warnings = Vec::new();
         let m = finish(&plastic, &mut warnings);
         assert_eq!((m.lambert, m.reflection), (Vec3::splat(0.8), Vec3::ONE));
-        let glassy = Draft { transmission: Some(Vec3::splat(0.2)), ..plastic.clone() };
-        assert_eq!(finish(&glassy, &mut warnings).transmission, Vec3::splat(0.2));
         assert!(warnings.is_empty(), "{warnings:?}");
 
         let bright = Draft { diffuse: Some(Vec3::splat(2.0)), ..plastic.clone() };
@@ -359,8 +358,10 @@ mod tests {
         let m = finish(&coat, &mut warnings);
         assert_eq!((m.lambert, m.reflection), (Vec3::splat(0.8), Vec3::ONE));
         assert!(warnings.len() == 2 && warnings[1].contains("energy: reflection albedo reaches 4"), "{warnings:?}");
-        let mirror = finish(&Draft { eta: None, ..plastic }, &mut warnings);
+        let mirror = finish(&Draft { eta: None, ..plastic.clone() }, &mut warnings);
         assert!(warnings.len() == 3 && (mirror.reflection.x - 1.0 / 1.8).abs() < 1e-6, "beside each other: {mirror:?}");
+        let glassy = finish(&Draft { transmission: Some(Vec3::splat(0.2)), ..plastic }, &mut warnings);
+        assert!(warnings.len() == 4 && (glassy.transmission.x - 0.2 / 1.8).abs() < 1e-6, "so does glass: {glassy:?}");
     }
 
     #[test]
