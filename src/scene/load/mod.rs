@@ -45,9 +45,10 @@ pub fn load(path: &Path) -> Result<Scene> {
             )));
         }
     };
-    scene.warnings.extend(bodies::warnings(&scene));
     let merged = scene.merge_overlapping_lamps();
     scene.warnings.extend(merged);
+    // What was there twice may be gone by now.
+    scene.warnings.extend(bodies::warnings(&scene));
     for warning in &mut scene.warnings {
         // Names come from files, and a terminal would obey.
         if warning.contains(char::is_control) {
