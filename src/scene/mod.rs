@@ -16,6 +16,7 @@ mod luminaire_table;
 mod material;
 mod mesh;
 mod overlap;
+pub(crate) mod rounding;
 mod sensor;
 mod settings;
 mod texture;

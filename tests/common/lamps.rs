@@ -1,5 +1,6 @@
 //! Files with lamps that lie on each other over a grey floor. Whatever they are cut into, they light the floor as one lamp does.
 
+use glam::DVec3;
 use luminaire::scene::{Scene, load};
 use std::fmt::Write;
 
@@ -99,5 +100,38 @@ pub fn scene(mesh: &str, more: &str) -> Scene {
         "[sensor]\nposition = [0, 0.5, 0.001]\ntarget = [0, 0, 0]\nfov = 0.15\n[film]\nwidth = 4\nheight = 4\n";
     let objects = "[[object]]\nmesh = \"floor.obj\"\n[[object]]\nmesh = \"lamp.obj\"\n";
     write("scene.toml", &format!("{sensor}{objects}{more}"));
+    load(&folder.path().join("scene.toml")).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// A white lamp of side 1 and radiance 1 in the plane of a black ceiling of this half side, both tilted, and a sensor that sees the lamp alone.
+#[allow(dead_code)] // Not in every program of tests.
+pub fn in_a_large_ceiling(half: f64) -> Scene {
+    let u = DVec3::new(0.93, 0.25, 0.26).normalize();
+    let v = u.cross(DVec3::new(0.36, -0.64, -0.67)).normalize();
+    let normal = u.cross(v);
+    let centre = DVec3::new(0.65, -0.4, 0.73);
+    let square = |half: f64, material: &str| {
+        let mut text = format!("mtllib m.mtl\nusemtl {material}\n");
+        for (x, y) in [(-half, -half), (half, -half), (half, half), (-half, half)] {
+            let DVec3 { x, y, z } = centre + u * x + v * y;
+            let _ = writeln!(text, "v {x} {y} {z}");
+        }
+        text + "f 1 2 3 4\n"
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).expect("a file");
+    write("m.mtl", "newmtl black\nKd 0 0 0\nnewmtl lamp\nKd 0 0 0\nKe 1 1 1\n");
+    write("lamp.obj", &square(0.5, "lamp"));
+    write("ceiling.obj", &square(half, "black"));
+    let eye = centre + 2.0 * normal;
+    write(
+        "scene.toml",
+        &format!(
+            "[sensor]\nposition = {:?}\ntarget = {:?}\nfov = 20\n[film]\nwidth = 16\nheight = 16\n\
+             [[object]]\nmesh = \"lamp.obj\"\n[[object]]\nmesh = \"ceiling.obj\"\n",
+            eye.to_array(),
+            centre.to_array()
+        ),
+    );
     load(&folder.path().join("scene.toml")).unwrap_or_else(|error| panic!("{error}"))
 }

@@ -1,7 +1,7 @@
 //! Lamps that lie on each other, on every backend: the radiance that one lamp gives.
 
 use super::*;
-use crate::common::lamps::{expected, files, scene};
+use crate::common::lamps::{expected, files, in_a_large_ceiling, scene};
 use crate::common::scenes::estimator;
 use crate::common::statistics::*;
 use luminaire::scene::LightSampling;
@@ -30,6 +30,18 @@ fn one_lamp_is_counted_once() {
                 found.error,
                 expected()
             );
+        });
+    }
+}
+
+/// The larger the ceiling, the further rays round by, and the further the lamp has to be off its plane.
+#[test]
+fn a_lamp_shows_in_a_large_ceiling() {
+    for half in [3.0, 100.0, 800.0] {
+        let scene = in_a_large_ceiling(half);
+        on_every_backend(|backend| {
+            let found = total(&render(&mut backend.tracer(&scene), 16, 16, 16, 1));
+            assert!((found.mean - 1.0).abs() < 1e-6, "{half}, {}: {} instead of 1", backend.name(), found.mean);
         });
     }
 }

@@ -46,9 +46,10 @@ pub fn load(path: &Path) -> Result<Scene> {
             )));
         }
     };
-    scene.warnings.extend(bodies::warnings(&scene));
     let merged = scene.merge_overlapping_lamps();
     scene.warnings.extend(merged);
+    // What was there twice may be gone by now.
+    scene.warnings.extend(bodies::warnings(&scene));
     alike::shorten(&mut scene.warnings);
     for warning in &mut scene.warnings {
         // Names come from files, and a terminal would obey.

@@ -1,28 +1,66 @@
 //! Changes to single triangles of single objects, where other objects may share the mesh.
 
-use crate::scene::{Mesh, Object, Scene, Triangle, widen};
-use glam::{DVec3, Vec2, Vec3};
+use crate::scene::{Mesh, Object, Scene, Triangle, outward, widen};
+use glam::{DAffine3, DVec3, Vec2, Vec3};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
 
-/// Changes to the triangles of objects.
+/// Instances share what is added to them where it differs by less, for each unit of its coordinates.
+const SAME_CORNER: f64 = 1e-6;
+
+/// Changes to the triangles of objects, in world space.
 #[derive(Debug, Default)]
 pub(super) struct Edits {
     objects: BTreeMap<u32, ObjectEdits>,
 }
 
-/// Changes to the triangles of one object.
+/// Changes to the triangles of one object. Distances are to the outward side.
 #[derive(Debug, Default, Clone)]
 struct ObjectEdits {
     removed: BTreeSet<u32>,
     /// By triangle, the new material.
     materials: BTreeMap<u32, u32>,
-    /// By triangle, by how much it moves in world space.
-    moved: BTreeMap<u32, DVec3>,
-    /// Corners in world space, and a material.
-    added: Vec<([DVec3; 3], u32)>,
-    /// Triangles of which a second one is made that faces the other way, with its material and by how much it moves in world space.
-    turned: Vec<(u32, u32, DVec3)>,
+    /// By triangle, how far it moves.
+    moved: BTreeMap<u32, f64>,
+    /// Triangles of which a second one is made that faces the other way, and moves as far that way; with its material.
+    turned: BTreeMap<u32, u32>,
+    added: Vec<Added>,
+}
+
+/// A new triangle, counter-clockwise where it is outside.
+#[derive(Debug, Clone)]
+struct Added {
+    corners: [DVec3; 3],
+    material: u32,
+    /// How far it moves.
+    moved: f64,
+}
+
+/// What instances have to have in common, apart from distances, to share an edited mesh.
+#[derive(PartialEq, Eq, Hash)]
+struct Shape<'a> {
+    mesh: u32,
+    /// The object's own material, where the triangles get materials of their own.
+    material: Option<u32>,
+    removed: &'a BTreeSet<u32>,
+    materials: &'a BTreeMap<u32, u32>,
+    moved: Vec<u32>,
+    turned: &'a BTreeMap<u32, u32>,
+    added: Vec<u32>,
+}
+
+/// The meshes that are made anew.
+#[derive(Debug)]
+pub(super) struct Plan {
+    meshes: Vec<Planned>,
+}
+
+/// A mesh that is made anew, and who shows it.
+#[derive(Debug)]
+struct Planned {
+    objects: Vec<u32>,
+    /// In object space; what moves does so as far as any of the objects asks.
+    edits: ObjectEdits,
 }
 
 impl Edits {
@@ -34,52 +72,65 @@ impl Edits {
         self.objects.entry(object).or_default().materials.insert(triangle, material);
     }
 
-    pub(super) fn shift(&mut self, object: u32, triangle: u32, by: DVec3) {
-        self.objects.entry(object).or_default().moved.insert(triangle, by);
+    /// Moves a triangle to its outward side.
+    pub(super) fn shift(&mut self, object: u32, triangle: u32, by: f64) {
+        let moved = self.objects.entry(object).or_default().moved.entry(triangle).or_default();
+        *moved = moved.max(by);
     }
 
-    /// A new triangle of this object, flat, counter-clockwise where it is outside.
-    pub(super) fn add(&mut self, object: u32, corners: [DVec3; 3], material: u32) {
-        self.objects.entry(object).or_default().added.push((corners, material));
+    /// A new triangle of this object, flat, counter-clockwise where it is outside, and moved to there.
+    pub(super) fn add(&mut self, object: u32, corners: [DVec3; 3], material: u32, moved: f64) {
+        self.objects.entry(object).or_default().added.push(Added { corners, material, moved });
     }
 
-    /// A second triangle that faces the other way.
-    pub(super) fn turn(&mut self, object: u32, triangle: u32, material: u32, by: DVec3) {
-        self.objects.entry(object).or_default().turned.push((triangle, material, by));
+    /// A second triangle that faces the other way, and moves as far that way as the first does its own.
+    pub(super) fn turn(&mut self, object: u32, triangle: u32, material: u32) {
+        self.objects.entry(object).or_default().turned.insert(triangle, material);
     }
 
+    /// The meshes that the changes take: objects that show one mesh and are changed in the same way go on sharing one.
+    pub(super) fn plan(&self, scene: &Scene) -> Plan {
+        let mut meshes: Vec<Planned> = Vec::new();
+        let mut known: HashMap<Shape, Vec<usize>> = HashMap::new();
+        for (index, edits) in &self.objects {
+            let object = &scene.objects[*index as usize];
+            let own = edits.in_object_space(&scene.meshes[object.mesh as usize], object);
+            let same_shape = known.entry(edits.shape(object)).or_default();
+            match same_shape.iter().find(|known| meshes[**known].edits.adds_the_same(&own)) {
+                Some(known) => {
+                    meshes[*known].objects.push(*index);
+                    meshes[*known].edits.move_as_far(&own);
+                }
+                None => {
+                    same_shape.push(meshes.len());
+                    meshes.push(Planned { objects: vec![*index], edits: own });
+                }
+            }
+        }
+        Plan { meshes }
+    }
+}
+
+impl Plan {
     /// How many triangles the meshes have that have to be made anew.
     pub(super) fn copies(&self, scene: &Scene) -> usize {
-        let mesh = |object: &u32| scene.objects[*object as usize].mesh;
-        let plain: BTreeSet<(u32, &BTreeSet<u32>)> =
-            self.objects.iter().filter(|(_, e)| e.only_removes()).map(|(o, e)| (mesh(o), &e.removed)).collect();
-        let others = self.objects.iter().filter(|(_, e)| !e.only_removes()).map(|(o, _)| mesh(o));
-        let size = |mesh: u32| scene.meshes[mesh as usize].triangles.len();
-        plain.iter().map(|(mesh, _)| size(*mesh)).chain(others.map(size)).sum()
+        let mesh = |planned: &Planned| scene.objects[planned.objects[0] as usize].mesh as usize;
+        self.meshes.iter().map(|planned| scene.meshes[mesh(planned)].triangles.len()).sum()
     }
 
     /// Makes the changes. Objects that have no triangle left go, and meshes that no object shows any longer.
     pub(super) fn apply(self, scene: &mut Scene) {
-        // Instances that lose the same triangles go on sharing a mesh.
-        let mut known: HashMap<(u32, BTreeSet<u32>), u32> = HashMap::new();
-        for (index, edits) in &self.objects {
-            let object = &scene.objects[*index as usize];
-            let key = (object.mesh, edits.removed.clone());
-            let plain = edits.only_removes();
-            if let Some(mesh) = known.get(&key).filter(|_| plain) {
-                scene.objects[*index as usize].mesh = *mesh;
-                continue;
-            }
-            let mesh = edited(&scene.meshes[object.mesh as usize], object, edits);
+        for Planned { objects, edits } in self.meshes {
+            let first = &scene.objects[objects[0] as usize];
+            let mesh = edited(&scene.meshes[first.mesh as usize], first, &edits);
             let number = scene.meshes.len() as u32;
             scene.meshes.push(Arc::new(mesh));
-            let object = &mut scene.objects[*index as usize];
-            object.mesh = number;
-            if edits.changes_materials() {
-                object.material = None;
-            }
-            if plain {
-                known.insert(key, number);
+            for index in objects {
+                let object = &mut scene.objects[index as usize];
+                object.mesh = number;
+                if edits.changes_materials() {
+                    object.material = None;
+                }
             }
         }
         scene.objects.retain(|object| !scene.meshes[object.mesh as usize].triangles.is_empty());
@@ -97,21 +148,69 @@ impl Edits {
 }
 
 impl ObjectEdits {
-    fn only_removes(&self) -> bool {
-        !self.changes_materials() && self.moved.is_empty()
-    }
-
     /// Whether triangles of the object no longer have all the same material, if they had.
     fn changes_materials(&self) -> bool {
         !(self.materials.is_empty() && self.added.is_empty() && self.turned.is_empty())
     }
+
+    fn shape(&self, object: &Object) -> Shape<'_> {
+        Shape {
+            mesh: object.mesh,
+            material: object.material.filter(|_| self.changes_materials()),
+            removed: &self.removed,
+            materials: &self.materials,
+            moved: self.moved.keys().copied().collect(),
+            turned: &self.turned,
+            added: self.added.iter().map(|added| added.material).collect(),
+        }
+    }
+
+    /// The same changes in the space of the object's mesh.
+    fn in_object_space(&self, mesh: &Mesh, object: &Object) -> ObjectEdits {
+        let to_world = widen(object.object_to_world);
+        let to_object: DAffine3 = to_world.inverse();
+        let normal_to_world = to_object.matrix3.transpose();
+        // A transform takes distances across a triangle to such by one factor, the length that it gives to the normal.
+        let distance = |normal: DVec3, by: f64| by * (normal_to_world * normal.normalize_or_zero()).length();
+        // An object that mirrors turns the winding of its triangles; outside stays outside.
+        let mirrored = to_world.matrix3.determinant() < 0.0;
+        let moved = self.moved.iter();
+        let added = self.added.iter().map(|added| {
+            let [a, b, c] = added.corners.map(|p| to_object.transform_point3(p));
+            let [a, b, c] = if mirrored { [a, c, b] } else { [a, b, c] };
+            let moved = distance((b - a).cross(c - a), added.moved);
+            Added { corners: [a, b, c], moved, ..*added }
+        });
+        ObjectEdits {
+            moved: moved.map(|(t, by)| (*t, distance(outward(mesh, &mesh.triangles[*t as usize]), *by))).collect(),
+            added: added.collect(),
+            ..self.clone()
+        }
+    }
+
+    /// Whether what is added is in the same places, for changes of one shape.
+    fn adds_the_same(&self, other: &ObjectEdits) -> bool {
+        self.added.iter().zip(&other.added).all(|(a, b)| {
+            let near = SAME_CORNER * a.corners.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
+            a.corners.iter().zip(b.corners).all(|(p, q)| p.distance(q) <= near)
+        })
+    }
+
+    /// Moves what moves at least as far as `other` does, for changes of one shape.
+    fn move_as_far(&mut self, other: &ObjectEdits) {
+        self.moved.values_mut().zip(other.moved.values()).for_each(|(own, by)| *own = own.max(*by));
+        self.added.iter_mut().zip(&other.added).for_each(|(own, by)| own.moved = own.moved.max(by.moved));
+    }
 }
 
-/// The mesh of an object after its changes.
+/// The mesh of an object after its changes, which are in object space.
 fn edited(mesh: &Mesh, object: &Object, edits: &ObjectEdits) -> Mesh {
-    let to_object = widen(object.object_to_world).inverse();
     let mut new = Mesh { triangles: Vec::with_capacity(mesh.triangles.len()), ..mesh.clone() };
     let own_materials = edits.changes_materials();
+    let by = |index: u32| {
+        let distance = edits.moved.get(&index).copied().unwrap_or(0.0);
+        outward(mesh, &mesh.triangles[index as usize]).normalize_or_zero() * distance
+    };
     for (index, triangle) in (0..).zip(&mesh.triangles) {
         if edits.removed.contains(&index) {
             continue;
@@ -121,18 +220,20 @@ fn edited(mesh: &Mesh, object: &Object, edits: &ObjectEdits) -> Mesh {
             let all = object.material.unwrap_or(triangle.material);
             triangle.material = edits.materials.get(&index).copied().unwrap_or(all);
         }
-        if let Some(by) = edits.moved.get(&index) {
-            triangle.vertices = triangle.vertices.map(|v| moved(&mut new, v, to_object.transform_vector3(*by), 1.0));
+        if edits.moved.contains_key(&index) {
+            triangle.vertices = triangle.vertices.map(|v| moved(&mut new, v, by(index), 1.0));
         }
         new.triangles.push(triangle);
     }
-    for (index, material, by) in &edits.turned {
+    for (index, material) in &edits.turned {
         let [a, b, c] = mesh.triangles[*index as usize].vertices;
-        let vertices = [a, c, b].map(|v| moved(&mut new, v, to_object.transform_vector3(*by), -1.0));
+        let vertices = [a, c, b].map(|v| moved(&mut new, v, -by(*index), -1.0));
         new.triangles.push(Triangle { vertices, material: *material });
     }
-    for (corners, material) in &edits.added {
-        let places = corners.map(|p| to_object.transform_point3(p).as_vec3());
+    for added in &edits.added {
+        let [a, b, c] = added.corners;
+        let by = (b - a).cross(c - a).normalize_or_zero() * added.moved;
+        let places = added.corners.map(|p| (p + by).as_vec3());
         let [a, b, c] = places.map(|p| p.as_dvec3());
         if (b - a).cross(c - a) == DVec3::ZERO {
             continue;
@@ -148,10 +249,7 @@ fn edited(mesh: &Mesh, object: &Object, edits: &ObjectEdits) -> Mesh {
         if !mesh.colours.is_empty() {
             new.colours.extend([Vec3::ONE; 3]);
         }
-        // An object that mirrors turns the winding of its triangles; outside stays outside.
-        let mirrored = object.object_to_world.matrix3.determinant() < 0.0;
-        let vertices = if mirrored { [first, first + 2, first + 1] } else { [first, first + 1, first + 2] };
-        new.triangles.push(Triangle { vertices, material: *material });
+        new.triangles.push(Triangle { vertices: [first, first + 1, first + 2], material: added.material });
     }
     new
 }

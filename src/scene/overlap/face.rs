@@ -10,6 +10,10 @@ use obvhs::aabb::Aabb;
 const SAME_PLACE: f64 = 1e-6;
 /// But never more than this part of the smaller triangle, so that what is tiny keeps its shape.
 const LEAST_SHAPE: f64 = 1e-4;
+/// How far a triangle is moved off another one, for each unit of its coordinates and its size, unless that is too little or too much.
+const USUAL_LIFT: f64 = 1.5e-5;
+/// And at most, for each unit of its width: what is moved further is seen to have moved.
+const MOST_LIFT: f64 = 0.01;
 
 /// A triangle of an object, in world space.
 #[derive(Debug, Clone)]
@@ -77,14 +81,24 @@ impl Face {
         self.corners.iter().sum::<DVec3>() / 3.0
     }
 
-    /// How far a triangle is moved off another one that it lies on: so little that nobody sees it, and far more than rays round by.
-    pub(super) fn lift(&self) -> f64 {
-        1.5e-5 * self.reach.max(self.size)
+    /// How far it is moved off another triangle that it lies on, if that takes at least `needed`: further than rays usually round by, but so
+    /// little that nobody sees it. None if there is no such distance.
+    pub(super) fn lift(&self, needed: f64) -> Option<f64> {
+        let [a, b, c] = self.corners;
+        // The side of the square of which it would be half.
+        let side = (b - a).cross(c - a).length().sqrt();
+        let most = MOST_LIFT * side;
+        (needed <= most).then(|| needed.max(USUAL_LIFT * self.reach.max(self.size)).min(most))
+    }
+
+    /// How far another one may lie off its plane, and still be taken to lie in it.
+    pub(super) fn tolerance(&self, other: &Face) -> f64 {
+        (SAME_PLACE * self.reach.max(other.reach)).min(LEAST_SHAPE * self.size.min(other.size))
     }
 
     /// How `other` lies to this one.
     pub(super) fn relation(&self, other: &Face) -> Relation {
-        let near = (SAME_PLACE * self.reach.max(other.reach)).min(LEAST_SHAPE * self.size.min(other.size));
+        let near = self.tolerance(other);
         let (large, small) = if self.size >= other.size { (self, other) } else { (other, self) };
         let [a, b, c] = large.corners;
         let Some(normal) = (b - a).cross(c - a).try_normalize() else { return Relation::Apart };

@@ -11,6 +11,7 @@ mod union;
 use self::edits::Edits;
 use self::face::{Face, Relation};
 use self::union::{MOST_UNITED, union};
+use super::rounding::across;
 use super::{Maps, Material, Scene, widen};
 use glam::{DVec3, Vec3};
 use obvhs::aabb::Aabb;
@@ -28,8 +29,8 @@ const MOST_OTHERS: usize = 50_000_000;
 const MOST_OVERLAPS: usize = 20_000;
 /// Pairs of triangles of one group that are compared.
 const MOST_IN_GROUP: usize = 1 << 22;
-/// Triangles of meshes that are made anew.
-const MOST_COPIED: usize = 50_000_000;
+/// Triangles of meshes that are made anew: as many as the scene has, or if it has few, so many.
+const MOST_COPIED: usize = 1 << 18;
 
 /// Something that was found, how often, and where first.
 #[derive(Debug, Default)]
@@ -51,6 +52,8 @@ struct Report {
     unresolved: Found,
     in_plane: Found,
     undecided: Found,
+    glowing: Found,
+    stuck: Found,
     unsearched: bool,
 }
 
@@ -62,8 +65,10 @@ struct Merger<'a> {
     dropped: Vec<bool>,
     /// By face: it is one-sided, and from now on shines both ways.
     both_ways: Vec<bool>,
-    /// By face: it is moved off its plane, to its outward side, and to both sides if it shines both ways.
-    lifted: Vec<bool>,
+    /// By face: how far it is moved off its plane, to its outward side, and to both sides if it shines both ways.
+    lift: Vec<f64>,
+    /// By face: there is a warning of it already, as of one that is left as it is.
+    told: Vec<bool>,
     /// Materials that only differ by which sides shine: the new ones, and by the old one's number and sides the new one's.
     variants: Vec<Material>,
     variant_of: BTreeMap<(u32, bool), u32>,
@@ -89,7 +94,8 @@ impl Scene {
             faces,
             dropped: vec![false; count],
             both_ways: vec![false; count],
-            lifted: vec![false; count],
+            lift: vec![0.0; count],
+            told: vec![false; count],
             variants: Vec::new(),
             variant_of: BTreeMap::new(),
             parent: (0..count).collect(),
@@ -103,13 +109,18 @@ impl Scene {
         merger.edit(&mut edits);
         let Merger { report, variants, .. } = merger;
         let path = self.path.display().to_string();
-        if edits.copies(self) > MOST_COPIED {
+        let plan = edits.plan(self);
+        let copies = plan.copies(self);
+        let own: usize = self.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
+        if copies > own.max(MOST_COPIED) {
             return vec![format!(
-                "{path}: lamps lie on each other in so many instances that they are left as they are: their light is counted twice"
+                "{path}: lamps lie on each other or in the plane of other triangles, in instances that would each need a mesh of its own, of \
+                 {copies} triangles together; all are left as they are: there light is counted twice, or which is seen is left to rounding; \
+                 make the lamps a mesh of their own, or move them"
             )];
         }
         self.materials.extend(variants);
-        edits.apply(self);
+        plan.apply(self);
         report.sentences(&path)
     }
 }
@@ -185,6 +196,44 @@ impl Merger<'_> {
         std::ptr::eq(a, b) || unnamed(a) == unnamed(b)
     }
 
+    /// Whether light goes through a lamp, beside what its opacity lets pass: its faces have to stay where they are.
+    fn transmits(&self, face: usize) -> bool {
+        transmits(self.material(face))
+    }
+
+    /// How far a triangle has to be moved off one in whose plane it lies, so that rays tell them apart: the bounds on the rounding of both.
+    /// None if it would be seen to have moved.
+    fn gap(&self, moved: &Face, other: &Face) -> Option<f64> {
+        let rounding = |face: &Face| across(self.scene, face.object, face.triangle, face.corners).0;
+        moved.lift(rounding(moved) + rounding(other) + moved.tolerance(other))
+    }
+
+    /// Moves a lamp at least so far.
+    fn raise(&mut self, lamp: usize, by: f64) {
+        self.lift[lamp] = self.lift[lamp].max(by);
+    }
+
+    /// Moves two lamps apart that lie in a plane, each to its own side.
+    fn part(&mut self, a: usize, b: usize) {
+        match (self.gap(&self.faces[a], &self.faces[b]), self.gap(&self.faces[b], &self.faces[a])) {
+            (Some(of_a), Some(of_b)) => {
+                self.raise(a, of_a);
+                self.raise(b, of_b);
+                let face = self.faces[b].clone();
+                self.note(|report| &mut report.apart, 1, &face, "");
+            }
+            _ => self.leave(|report| &mut report.stuck, b),
+        }
+    }
+
+    /// Says of a lamp, once, that it is left as it is.
+    fn leave(&mut self, kind: impl Fn(&mut Report) -> &mut Found, lamp: usize) {
+        if !std::mem::replace(&mut self.told[lamp], true) {
+            let face = self.faces[lamp].clone();
+            self.note(kind, 1, &face, "");
+        }
+    }
+
     /// Object, material and place of a face, for people.
     fn place_of(&self, face: &Face) -> String {
         let object = &self.scene.objects[face.object as usize].name;
@@ -233,20 +282,24 @@ impl Merger<'_> {
             return;
         }
         let face = self.faces[other].clone();
+        let opposite = self.faces[first].normal.dot(face.normal) < 0.0;
+        let alike = self.alike(first, other);
+        // Where bodies of glass touch, both have to keep their surface.
+        let one = alike && !(opposite && self.material(other).bends());
         if !self.emits(other) {
-            if self.alike(first, other) {
+            if one {
                 self.dropped[other] = true;
                 self.note(|report| &mut report.veils, 1, &face, "");
             }
             return;
         }
-        let opposite = self.faces[first].normal.dot(face.normal) < 0.0;
+        if !one && (self.transmits(first) || self.transmits(other)) {
+            self.leave(|report| &mut report.glowing, other);
+            return;
+        }
         let back_to_back = opposite && self.one_sided(first) && self.one_sided(other);
-        let alike = self.alike(first, other);
         if back_to_back && !alike {
-            self.lifted[first] = true;
-            self.lifted[other] = true;
-            self.note(|report| &mut report.apart, 1, &face, "");
+            self.part(first, other);
             return;
         }
         self.dropped[other] = true;
@@ -293,12 +346,13 @@ impl Merger<'_> {
         if !self.emits(a) || !self.emits(b) {
             return;
         }
+        if self.transmits(a) || self.transmits(b) {
+            self.leave(|report| &mut report.glowing, if self.transmits(b) { b } else { a });
+            return;
+        }
         let opposite = self.faces[a].normal.dot(self.faces[b].normal) < 0.0;
         if opposite && self.one_sided(a) && self.one_sided(b) {
-            self.lifted[a] = true;
-            self.lifted[b] = true;
-            let face = self.faces[b].clone();
-            self.note(|report| &mut report.apart, 1, &face, "");
+            self.part(a, b);
         } else if self.alike(a, b) && self.one_sided(a) == self.one_sided(b) {
             self.overlaps[a] += 1;
             let (a, b) = (self.root(a), self.root(b));
@@ -319,7 +373,8 @@ impl Merger<'_> {
             let normals = mesh.triangles[of.triangle as usize].vertices.map(|v| mesh.normals[v as usize]);
             normals.iter().all(|n| n.distance(normals[0]) < 1e-3)
         };
-        material.maps == Maps::default() && flat && (mesh.colours.is_empty() || material.lambert == Vec3::ZERO)
+        let uncoloured = mesh.colours.is_empty() || (material.lambert == Vec3::ZERO && material.ambient == Vec3::ZERO);
+        material.maps == Maps::default() && flat && uncoloured
     }
 
     fn root(&mut self, mut face: usize) -> usize {
@@ -344,8 +399,8 @@ impl Merger<'_> {
             let united = if few { union(&faces) } else { None };
             let other = faces[faces.len() - 1].clone();
             if let Some(kept) = united.as_ref().and_then(|united| self.cover(&group, united)) {
-                let lifted = group.iter().any(|index| self.lifted[*index]);
-                kept.iter().for_each(|index| self.lifted[*index] |= lifted);
+                let lift = self.highest(&group);
+                kept.iter().filter(|_| lift > 0.0).for_each(|index| self.raise(*index, lift));
                 group.iter().filter(|index| !kept.contains(index)).for_each(|index| self.dropped[*index] = true);
                 self.note(|report| &mut report.same, group.len() - kept.len(), &other, "");
                 continue;
@@ -356,20 +411,22 @@ impl Merger<'_> {
                 continue;
             };
             let lamp = self.faces[group[0]].clone();
-            if group.iter().any(|index| self.lifted[*index]) {
-                let (by, material) = (lamp.normal * lamp.lift(), self.variant(lamp.material, true));
-                for [a, b, c] in united {
-                    edits.add(lamp.object, [a + by, b + by, c + by], material);
-                    if !self.one_sided(group[0]) {
-                        edits.add(lamp.object, [a - by, c - by, b - by], material);
-                    }
+            let lift = self.highest(&group);
+            let material = if lift > 0.0 { self.variant(lamp.material, true) } else { lamp.material };
+            for [a, b, c] in united {
+                edits.add(lamp.object, [a, b, c], material, lift);
+                if lift > 0.0 && !self.one_sided(group[0]) {
+                    edits.add(lamp.object, [a, c, b], material, lift);
                 }
-            } else {
-                united.into_iter().for_each(|t| edits.add(lamp.object, t, lamp.material));
             }
             group.iter().for_each(|index| self.dropped[*index] = true);
             self.note(|report| &mut report.united, group.len(), &other, "");
         }
+    }
+
+    /// How far the faces of a group are moved off their plane.
+    fn highest(&self, group: &[usize]) -> f64 {
+        group.iter().map(|index| self.lift[*index]).fold(0.0, f64::max)
     }
 
     /// Faces of a group that cover what all of it covers, and do not overlap: the first ones for which there is room. None if these leave something
@@ -416,13 +473,12 @@ impl Merger<'_> {
                 continue;
             }
             let one_sided = self.one_sided(index);
-            if self.lifted[index] {
-                let by = face.normal * face.lift();
-                edits.shift(face.object, face.triangle, by);
+            if self.lift[index] > 0.0 {
+                edits.shift(face.object, face.triangle, self.lift[index]);
                 if !one_sided {
                     let material = self.variant(face.material, true);
                     edits.give(face.object, face.triangle, material);
-                    edits.turn(face.object, face.triangle, material, -by);
+                    edits.turn(face.object, face.triangle, material);
                 }
             } else if self.both_ways[index] {
                 let material = self.variant(face.material, false);
@@ -501,17 +557,33 @@ impl Merger<'_> {
 
     /// What becomes of a triangle that does not emit and lies on a lamp.
     fn on_a_lamp(&mut self, lamp: usize, face: &Face, relation: Relation, edits: &mut Edits) {
-        let passes = self.scene.materials[face.material as usize].transmission != Vec3::ZERO;
-        if passes {
+        if face.normal == DVec3::ZERO || self.faces[lamp].normal == DVec3::ZERO {
+            // Nobody sees it.
+            return;
+        }
+        if transmits(&self.scene.materials[face.material as usize]) {
             // One side of a body of glass has to stay where it is, and light goes on through it.
             self.note(|report| &mut report.undecided, 1, face, "");
+        } else if self.transmits(lamp) {
+            self.leave(|report| &mut report.glowing, lamp);
         } else if relation == Relation::Overlapping {
-            self.lifted[lamp] = true;
-            self.note(|report| &mut report.in_plane, 1, face, "");
+            // Two one-sided veils in the place of one would take away twice.
+            if self.material(lamp).has_holes() && !self.one_sided(lamp) {
+                self.leave(|report| &mut report.glowing, lamp);
+            } else if let Some(by) = self.gap(&self.faces[lamp], face) {
+                self.raise(lamp, by);
+                self.note(|report| &mut report.in_plane, 1, face, "");
+            } else {
+                self.leave(|report| &mut report.stuck, lamp);
+            }
         } else if self.one_sided(lamp) && self.faces[lamp].normal.dot(face.normal) < 0.0 {
             // The back of a lamp: behind it.
-            edits.shift(face.object, face.triangle, -self.faces[lamp].normal * face.lift());
-            self.note(|report| &mut report.apart, 1, face, "");
+            if let Some(by) = self.gap(face, &self.faces[lamp]) {
+                edits.shift(face.object, face.triangle, by);
+                self.note(|report| &mut report.apart, 1, face, "");
+            } else {
+                self.leave(|report| &mut report.stuck, lamp);
+            }
         } else {
             edits.remove(face.object, face.triangle);
             self.note(|report| &mut report.hidden, 1, face, "");
@@ -554,6 +626,14 @@ impl Report {
                 &self.undecided,
                 "that transmit light lie in the plane of lamps: which of the two is met first is left to rounding; move one of them",
             ),
+            (
+                &self.glowing,
+                "that emit and let light through lie in the plane of other triangles, and are left as they are: which of the two is met first is left to rounding; move one of them",
+            ),
+            (
+                &self.stuck,
+                "that emit lie in the plane of others that are so large, or so far from the origin, that to move them by what single precision tells apart there would show: which of the two is met first is left to rounding; cut or move them",
+            ),
         ];
         let mut sentences: Vec<String> = kinds
             .iter()
@@ -567,6 +647,11 @@ impl Report {
         }
         sentences
     }
+}
+
+/// Whether light goes through a surface, beside what its opacity lets pass.
+fn transmits(material: &Material) -> bool {
+    material.transmission != Vec3::ZERO && material.eta.is_some()
 }
 
 fn build(boxes: &[Aabb]) -> Bvh2 {
