@@ -18,6 +18,11 @@ pub(crate) fn available() -> Option<u64> {
     [Some(machine), group_available(), address_space()].into_iter().flatten().min()
 }
 
+/// Address space that the threads of the reference may still take once they begin to allocate; none where nothing limits it.
+pub(crate) fn threads_demand() -> u64 {
+    address_space().map_or(0, |_| THREAD * rayon::current_num_threads() as u64)
+}
+
 /// Bytes that this process may still map; none if nothing limits them, or that is not known.
 fn address_space() -> Option<u64> {
     let limits = std::fs::read_to_string("/proc/self/limits").ok()?;
@@ -93,7 +98,8 @@ fn kib(text: &str, name: &str) -> Option<u64> {
 /// Bytes for a message.
 pub(crate) fn gib(bytes: u64) -> String {
     match bytes as f64 / f64::from(1 << 30) {
-        gib if gib < 0.1 => format!("{:.1} MiB", bytes as f64 / f64::from(1 << 20)),
+        // So that numbers that are nearly the same differ.
+        gib if gib < 10.0 => format!("{:.1} MiB", bytes as f64 / f64::from(1 << 20)),
         gib => format!("{gib:.1} GiB"),
     }
 }
@@ -111,6 +117,6 @@ mod tests {
                       Max data size             unlimited            unlimited            bytes     \n\
                       Max address space         1024000              unlimited            bytes     \n";
         assert_eq!([limit(limits, "Max address space"), limit(limits, "Max data size")], [Some(1_024_000), None]);
-        assert_eq!([gib(22 << 30), gib(3 << 19)], ["22.0 GiB", "1.5 MiB"]);
+        assert_eq!([gib(22 << 30), gib(3 << 19), gib(5 << 28)], ["22.0 GiB", "1.5 MiB", "1280.0 MiB"]);
     }
 }

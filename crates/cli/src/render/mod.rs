@@ -137,13 +137,15 @@ fn trace(
     }
     // The checkpoint comes first: whatever fails afterwards, the samples are saved.
     let checkpoint = checkpoint.filter(|_| rendered.progress.samples > 0);
-    let saved = checkpoint.map(|checkpoint| interrupts::hold_off(|| checkpoint.save(&rendered)));
+    let saved = checkpoint.map(|checkpoint| checkpoint.save(&rendered));
     // Not after a failure, for the device would fail again, nor after an interrupt, which should end the run soon.
     let mut layers = None;
     if options.wants_aovs() && !matches!(rendered.end, End::Failed(_) | End::Stopped) {
         let size = (rendered.film.width, rendered.film.height);
-        match aovs(&mut tracer, size, rendered.film.most_samples()) {
-            Ok(found) => layers = Some(found),
+        match aovs(&mut tracer, size, rendered.film.most_samples(), &interrupts::STOP) {
+            // Samples are complete then, and the files are written without layers.
+            Ok(None) => rendered.end = End::Stopped,
+            Ok(found) => layers = found,
             Err(error) => rendered.end = End::Failed(error),
         }
     }
