@@ -217,7 +217,13 @@ mod tests {
     fn a_file_of_somebody_elses_is_no_lock() {
         let folder = tempfile::tempdir().unwrap();
         let beside = folder.path().join("c.exr.lock");
-        for text in ["precious", "\u{0}", "luminaire is what I write about", "luminaire process 1", "luminaire process 1 on a\nb\n"] {
+        for text in [
+            "precious",
+            "\u{0}",
+            "luminaire is what I write about",
+            "luminaire process 1",
+            "luminaire process 1 on a\nb\n",
+        ] {
             std::fs::write(&beside, text).unwrap();
             let error = Lock::of(&folder.path().join("c.exr")).unwrap_err().to_string();
             assert!(error.contains("was not made for that"), "{error}");

@@ -46,6 +46,8 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     let mut outputs = Outputs::default();
     let mut pictures = vec![];
     let mut locks = vec![];
+    // Before locks are taken, which an interrupt would leave.
+    interrupts::listen(notes)?;
     if options.pixel.is_none() {
         pictures = outputs::pictures(options, &mut outputs)?;
         outputs::declare_others(options, &mut outputs)?;
@@ -53,7 +55,6 @@ pub fn run(options: &Options) -> Result<ExitCode> {
         locks = checkpoint::lock(options, notes)?;
         checkpoint::check(options)?;
     }
-    interrupts::listen(notes)?;
 
     let mut seconds = Seconds::default();
     let start = Instant::now();

@@ -67,7 +67,8 @@ impl Outputs {
         let whole = std::fs::canonicalize(folder).ok();
         let taken = |output: &&Output| {
             let Some(path) = output.place.whole() else { return false };
-            path.parent() == whole.as_deref() && path.file_name().and_then(|name| name.to_str()).is_some_and(&may_be_written)
+            path.parent() == whole.as_deref()
+                && path.file_name().and_then(|name| name.to_str()).is_some_and(&may_be_written)
         };
         if let Some(output) = self.0.iter().find(taken) {
             return Err(Error::Usage(format!(
