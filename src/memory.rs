@@ -8,7 +8,9 @@ const DRIVER: u64 = 1 << 30;
 /// ... of which each takes a stack and room to allocate from, in the driver and here.
 const DRIVER_THREAD: u64 = 160 << 20;
 /// Address space of a thread of the reference: its stack, and room to allocate from.
-const THREAD: u64 = 66 << 20;
+const THREAD: u64 = ARENA + (2 << 20);
+/// What the C library reserves for a thread that begins to allocate.
+const ARENA: u64 = 64 << 20;
 
 /// Bytes that a process may still take without swapping; known on Linux only. Counts the limit of the control group, which
 /// containers and batch systems set, and those of the process itself (`ulimit -v`, `ulimit -d`).
@@ -16,6 +18,23 @@ pub(crate) fn available() -> Option<u64> {
     let text = std::fs::read_to_string("/proc/meminfo").ok()?;
     let machine = kib(&text, "MemAvailable:")?;
     [Some(machine), group_available(), address_space()].into_iter().flatten().min()
+}
+
+/// Address space that threads will still take when they begin to allocate; none where nothing limits it.
+pub(crate) fn threads_demand() -> u64 {
+    if address_space().is_none() {
+        return 0;
+    }
+    // Those of the reference, and the one that waits for Ctrl-C.
+    let threads = rayon::current_num_threads() as u64 + 1;
+    let maps = std::fs::read_to_string("/proc/self/maps").unwrap_or_default();
+    ARENA * threads.saturating_sub(arenas(&maps))
+}
+
+/// How many arenas `/proc/self/maps` shows: glibc has them begin at multiples of their size, where other mappings hardly do.
+fn arenas(maps: &str) -> u64 {
+    let begin = |line: &str| u64::from_str_radix(line.split('-').next()?, 16).ok();
+    maps.lines().filter_map(begin).filter(|address| *address != 0 && address % ARENA == 0).count() as u64
 }
 
 /// Bytes that this process may still map; none if nothing limits them, or that is not known.
@@ -93,7 +112,8 @@ fn kib(text: &str, name: &str) -> Option<u64> {
 /// Bytes for a message.
 pub(crate) fn gib(bytes: u64) -> String {
     match bytes as f64 / f64::from(1 << 30) {
-        gib if gib < 0.1 => format!("{:.1} MiB", bytes as f64 / f64::from(1 << 20)),
+        // So that numbers that are nearly the same differ.
+        gib if gib < 10.0 => format!("{:.1} MiB", bytes as f64 / f64::from(1 << 20)),
         gib => format!("{gib:.1} GiB"),
     }
 }
@@ -107,10 +127,13 @@ mod tests {
         let text = "MemTotal:       24689836 kB\nMemFree:           100 kB\nMemAvailable:   23068672 kB\n";
         assert_eq!(kib(text, "MemAvailable:"), Some(22 << 30));
         assert_eq!(kib(text, "MemNone:"), None);
+        let maps = "55d0c0000000-55d0c0021000 r--p 00000000 08:01 1 /a\n7f0004000000-7f0004021000 rw-p 00000000 00:00 0\n\
+                    7f0004021000-7f0008000000 ---p 00000000 00:00 0\n";
+        assert_eq!(arenas(&maps.replace("55d0c0000000", "55d0c0001000")), 1);
         let limits = "Limit                     Soft Limit           Hard Limit           Units     \n\
                       Max data size             unlimited            unlimited            bytes     \n\
                       Max address space         1024000              unlimited            bytes     \n";
         assert_eq!([limit(limits, "Max address space"), limit(limits, "Max data size")], [Some(1_024_000), None]);
-        assert_eq!([gib(22 << 30), gib(3 << 19)], ["22.0 GiB", "1.5 MiB"]);
+        assert_eq!([gib(22 << 30), gib(3 << 19), gib(5 << 28)], ["22.0 GiB", "1.5 MiB", "1280.0 MiB"]);
     }
 }

@@ -1,6 +1,6 @@
 //! What a film and its files take of this machine's memory.
 
-use crate::memory::{available, gib};
+use crate::memory::{available, gib, threads_demand};
 use crate::sampling::PARTS;
 use crate::{Error, Result};
 
@@ -77,7 +77,8 @@ impl Demand {
                 self.width, self.height
             )));
         }
-        self.fits(available())
+        // What is rendered is not to be lost when it is written, and by then every thread has what it takes.
+        self.fits(available().map(|bytes| bytes.saturating_sub(threads_demand())))
     }
 
     fn fits(&self, available: Option<u64>) -> Result<()> {
@@ -113,7 +114,7 @@ mod tests {
         let absurd = Demand { width: 65536, height: 65535, sums: true, ..Demand::default() };
         let error = absurd.fits(Some(8 << 30)).unwrap_err().to_string();
         assert!(
-            error.contains("65536 x 65535") && error.contains("1012.0 GiB") && error.contains("8.0 GiB"),
+            error.contains("65536 x 65535") && error.contains("1012.0 GiB") && error.contains("8192.0 MiB"),
             "{error}"
         );
         let plain = Demand { width: 1920, height: 1080, ..Demand::default() };

@@ -118,7 +118,7 @@ mod tests {
         assert_eq!((textured.geometry, textured.textures), (1280 * 80 + 112, 8 << 16));
         let error = textured.fits(9 << 30, "this machine", (8 << 30, "what is free now")).unwrap_err().to_string();
         assert!(
-            ["9.0 GiB", "8.0 GiB, what is free", "textures smaller"].iter().all(|part| error.contains(part)),
+            ["9216.0 MiB", "8192.0 MiB, what is free", "textures smaller"].iter().all(|part| error.contains(part)),
             "{error}"
         );
     }

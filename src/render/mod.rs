@@ -230,10 +230,13 @@ mod tests {
     fn aovs_come_in_the_order_of_the_pixels() {
         for (size, max_sums) in [((37, 23), 1 << 20), ((37, 23), 100), ((37, 23), 10), ((3, 2), 4), ((1, 5), 4)] {
             let mut fake = Fake::new(size.0, max_sums, 1.0);
-            let found = aovs(&mut fake, size, 1000).unwrap();
+            let stop = AtomicBool::new(false);
+            let found = aovs(&mut fake, size, 1000, &stop).unwrap().unwrap();
             assert_eq!(found.samples, 64);
             let pixels: Vec<u32> = found.sums.iter().map(|sum| sum.hits).collect();
             assert_eq!(pixels, (0..size.0 * size.1).collect::<Vec<u32>>());
+            stop.store(true, Ordering::SeqCst);
+            assert!(aovs(&mut fake, size, 1000, &stop).unwrap().is_none());
         }
     }
 

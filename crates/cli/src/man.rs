@@ -1,5 +1,6 @@
 //! `luminaire man`: manual pages, from the definition that `--help` shows.
 
+use crate::shared::outputs::Outputs;
 use crate::shared::printing::print;
 use clap::Command;
 use clap_mangen::Man;
@@ -20,7 +21,7 @@ Examples:
 Exit codes:
   0  printed or written
   1  a page cannot be written
-  2  wrong usage";
+  2  wrong usage: a page would replace a file that luminaire has not written";
 
 /// Where to.
 #[derive(Debug, clap::Args)]
@@ -55,7 +56,11 @@ pub fn run(options: &Options, program: Command) -> Result<ExitCode> {
         return Ok(ExitCode::SUCCESS);
     };
     std::fs::create_dir_all(folder).map_err(|e| Error::write(folder, format!("the folder cannot be made ({e})")))?;
-    for page in std::iter::once(pages.program).chain(pages.subcommands) {
+    let pages: Vec<_> = std::iter::once(pages.program).chain(pages.subcommands).collect();
+    let mut outputs = Outputs::default();
+    pages.iter().try_for_each(|page| outputs.add_default("DIR", &folder.join(&page.name)))?;
+    outputs.check([])?;
+    for page in pages {
         let path = folder.join(page.name);
         save_text(&path, &page.text)?;
         print(&format!("{}\n", path.display()))?;

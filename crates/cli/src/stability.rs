@@ -104,26 +104,21 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Checks that the files can be written, and that those that nobody has named replace none of somebody else's.
+/// Checks that the files can be written, and that those that nobody has named replace none of somebody else's: a folder names no file.
 fn check_files(options: &Options, folder: &Path, page: &Path, sweeps: &[Definition]) -> Result<()> {
     let mut outputs = Outputs::default();
     match &options.page {
         Some(page) => outputs.add("--page", page)?,
         None => outputs.add_default("--page", page)?,
     }
-    let default = options.out.is_none().then_some("--out");
     for sweep in sweeps {
-        let path = folder.join(format!("{}.csv", sweep.name));
-        match default {
-            Some(option) => outputs.add_default(option, &path)?,
-            None => outputs.add("--out", &path)?,
-        }
+        outputs.add_default("--out", &folder.join(format!("{}.csv", sweep.name)))?;
     }
     let is_chart = |name: &str| {
         let begins = |sweep: &Definition| name.strip_prefix(sweep.name).is_some_and(|rest| rest.starts_with('-'));
         name.ends_with(".svg") && sweeps.iter().any(begins)
     };
-    outputs.add_those_in(folder, default, is_chart)?;
+    outputs.add_those_in(folder, "--out", is_chart)?;
     outputs.check([])
 }
 

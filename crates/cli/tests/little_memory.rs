@@ -40,12 +40,32 @@ fn drivers_that_would_crash_are_not_loaded() {
 fn a_film_that_does_not_fit_is_refused_with_what_it_wants() {
     let folder = Folder::new();
     let words = "render good.obj --backend cpu --width 4096 --height 4096 --spp 2 -o a.exr";
-    for (more, needed) in [("", "2.4 GiB"), ("--checkpoint c.exr", "4.0 GiB")] {
+    for (more, needed) in [("", "2488.0 MiB"), ("--checkpoint c.exr", "4088.0 MiB")] {
         let output = within(&folder, 600, &format!("{words} {more}"));
         let said = stderr(&output);
         assert!(output.status.code() == Some(1) && said.contains(needed) && said.contains("--width"), "{said}");
         assert!(!folder.names().iter().any(|name| name.ends_with(".exr") || name.ends_with(".lock")));
     }
+}
+
+#[test]
+fn what_is_rendered_is_written_or_refused_before() {
+    let folder = Folder::new();
+    let mut codes = vec![];
+    // Where the threads reserve what the files then want.
+    for (more, least) in [("", 320), ("--aov", 380)] {
+        for mib in [least, least + 20, least + 40, least + 60, least + 160] {
+            let words = format!("render good.obj --backend cpu --width 1280 --height 720 --spp 1 -o a.exr {more}");
+            let output = within(&folder, mib, &words);
+            let said = stderr(&output);
+            let refused = output.status.code() == Some(1) && said.contains("--width") && !said.contains("allocation");
+            assert!(output.status.success() || refused, "{mib} MiB {more}: {said}");
+            assert!(!folder.names().iter().any(|name| name.ends_with(".tmp")), "{mib} MiB {more}");
+            codes.push(refused);
+        }
+    }
+    // Neither limit is passed by refusing everything or nothing.
+    assert!(codes[0] && !codes[4] && codes[5] && !codes[9], "{codes:?}");
 }
 
 #[test]

@@ -88,3 +88,47 @@ fn a_file_in_the_locks_place_is_spared() {
     assert_eq!(std::fs::read_to_string(folder.path().join("c.exr.lock")).unwrap(), "precious");
     assert!(!folder.path().join("a.png").exists());
 }
+
+#[cfg(unix)]
+#[test]
+fn a_link_has_the_lock_of_what_it_leads_to() {
+    use std::os::unix::fs::symlink;
+    let folder = Folder::new();
+    std::fs::create_dir(folder.path().join("far")).unwrap();
+    symlink("far/real.exr", folder.path().join("c.exr")).unwrap();
+    // At first the link leads nowhere, and then to what was saved.
+    for _ in 0..2 {
+        let mut first = endless(&folder, &["--time", "600"]);
+        assert!(folder.path().join("c.exr").is_symlink() && folder.path().join("far/real.exr").is_file());
+        let words = ["render", "good.obj", "--backend", "cpu", "--width", "16", "--quiet", "--spp", "4", "-o", "b.exr"];
+        for name in ["c.exr", "far/real.exr"] {
+            let more = ["--checkpoint", name, "--resume"];
+            let output = folder.luminaire(&[&words[..], &more].concat()).output().unwrap();
+            let said = stderr(&output);
+            assert!(output.status.code() == Some(1) && said.contains("real.exr.lock"), "{name}: {said}");
+        }
+        first.kill();
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_leaves_no_lock() {
+    let folder = Folder::new();
+    // It takes a while to load.
+    let mut text = "mtllib good.mtl\nusemtl lamp\n".to_owned();
+    for n in 0..100_000 {
+        text += &format!("v {n} 0 0\nv {n} 1 0\nv {n} 0 1\nf -1 -2 -3\n");
+    }
+    folder.write("large.obj", &text);
+    let words = ["render", "large.obj", "--backend", "cpu", "--width", "16", "--time", "600", "-o", "a.exr"];
+    let mut job = Job(folder.luminaire(&[&words[..], &CHECKPOINT].concat()).spawn().unwrap());
+    while !folder.path().join("c.exr.lock").exists() {
+        assert!(job.0.try_wait().unwrap().is_none(), "the render has ended");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    let signal = format!("kill -s INT {}", job.0.id());
+    assert!(std::process::Command::new("sh").args(["-c", &signal]).status().unwrap().success());
+    assert_eq!(job.0.wait().unwrap().code(), Some(130));
+    assert!(!folder.names().iter().any(|name| name.ends_with(".lock")), "{:?}", folder.names());
+}

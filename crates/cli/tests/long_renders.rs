@@ -386,3 +386,60 @@ fn a_checkpoint_that_cannot_be_written_does_not_end_a_render() {
     }
     panic!("no render is long enough to lose its folder");
 }
+
+/// Sends SIGTERM to a program so often. The shell's own `kill`: a bare system has no other.
+fn terminate(program: &Running, times: usize) {
+    let line = vec![format!("kill -s TERM {}", program.id()); times].join("; ");
+    let _ = Command::new("sh").args(["-c", &line]).output().unwrap();
+}
+
+#[test]
+fn an_interrupt_while_the_checkpoint_is_saved_ends_the_render_afterwards() {
+    for times in [1, 2, 3] {
+        let folder = Folder::new();
+        // Hardly anything but saving.
+        let program = Running::start(
+            &mut folder
+                .render("--width 256 --height 256 --time 600 -o a.exr --checkpoint c.exr --checkpoint-every 0.000001"),
+        );
+        folder.wait_for("c.exr", &program);
+        terminate(&program, times);
+        let output = program.output();
+        assert_eq!(output.status.code(), Some(130), "{}", said(&output));
+        assert!(!said(&output).contains("nothing is written"), "{}", said(&output));
+        assert!(
+            !folder.names().iter().any(|name| name.ends_with(".tmp") || name.ends_with(".lock")),
+            "{times}: {:?}",
+            folder.names()
+        );
+    }
+}
+
+#[test]
+fn an_interrupt_while_layers_are_made_costs_only_the_layers() {
+    let folder = Folder::new();
+    let program = Running::start(
+        &mut folder.render("--width 640 --height 480 --spp 1 --aov -o a.exr --checkpoint c.exr --checkpoint-every 600"),
+    );
+    folder.wait_for("c.exr", &program);
+    terminate(&program, 1);
+    let output = program.output();
+    assert_eq!(output.status.code(), Some(130), "{}", said(&output));
+    assert!(said(&output).contains("without layers"), "{}", said(&output));
+    assert!(picture::read(&folder.path("a.exr")).is_ok());
+    assert!(!folder.bytes("a.exr")[..4096].windows(8).any(|bytes| bytes == b"albedo.R"), "there are layers");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_failed_device_and_a_failed_file_are_both_told() {
+    let folder = Folder::new();
+    let render = folder.render("-o a.exr --quiet");
+    let words: Vec<_> = render.get_args().map(|word| word.to_str().unwrap()).collect();
+    // No file may become larger than nothing.
+    let line = format!("trap '' XFSZ; ulimit -f 0; exec {} {}", env!("CARGO_BIN_EXE_luminaire"), words.join(" "));
+    let mut losing = Command::new("sh");
+    losing.current_dir(folder.0.path()).args(["-c", &line]).env("LUMINAIRE_LOSE_DEVICE_AFTER", "1");
+    fails(losing, 3, &["lost", "cannot write"]);
+    assert_eq!(folder.names(), [""; 0]);
+}

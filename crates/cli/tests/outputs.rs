@@ -178,3 +178,41 @@ fn compare_merge_bench_and_stability_spare_what_they_read() {
     folder.write("sub/README.md", "precious");
     refuses(&folder, &["stability", "samples", "--out", "sub"], &["README.md", "--page"]);
 }
+
+#[test]
+fn a_folder_names_none_of_the_files_in_it() {
+    let folder = textured();
+    let bench = ["bench", "crate.obj", "--quick", "--backend", "cpu", "--out", "."];
+    let stability = ["stability", "samples", "--out", ".", "--page", "page.md"];
+    let man = ["man", "."];
+    let spared = |words: &[&str], name: &str| {
+        folder.write(name, "precious");
+        refuses(&folder, words, &[name, "luminaire has not written", "move the file away"]);
+        std::fs::remove_file(folder.path().join(name)).unwrap();
+    };
+    for name in ["index.html", "figures.csv", "points.csv", "bench.json", "rays-mine.svg"] {
+        spared(&bench, name);
+    }
+    for name in ["samples.csv", "samples-random.svg"] {
+        spared(&stability, name);
+    }
+    for name in ["luminaire.1", "luminaire-render.1"] {
+        spared(&man, name);
+    }
+    // Its own pages are replaced, unless they are protected.
+    done(&folder, &man);
+    done(&folder, &man);
+    let page = folder.path().join("luminaire.1");
+    let mut permissions = page.metadata().unwrap().permissions();
+    permissions.set_readonly(true);
+    std::fs::set_permissions(&page, permissions).unwrap();
+    let output = folder.luminaire(&man).output().unwrap();
+    assert!(output.status.code() == Some(1) && stderr(&output).contains("read-only"), "{}", stderr(&output));
+
+    // A page in the place of a chart would be written over it.
+    for page in ["rays-instances-bounce.svg", "sub/../rays-instances-bounce.svg"] {
+        refuses(&folder, &[&bench[..], &["--page", page]].concat(), &["--page", page, "give another name"]);
+    }
+    let page = ["stability", "samples", "--out", ".", "--page", "samples-random.svg"];
+    refuses(&folder, &page, &["--page", "samples-random.svg", "give another name"]);
+}

@@ -6,6 +6,7 @@ use super::sensor_table::to_toml;
 use super::shown::Shown;
 use super::wanted::{Saved, Wanted};
 use glam::DVec3;
+use luminaire::files::{save_numbered, save_text};
 use luminaire::film::Film;
 use luminaire::scene::Sensor;
 use luminaire::{Result, picture};
@@ -14,9 +15,8 @@ use std::path::{Path, PathBuf};
 /// Writes a camera of a scene with this origin to a file whose name begins with `stem`. The news are its text, and the file's name or why it was not written.
 pub fn save_camera(stem: &str, sensor: &Sensor, origin: DVec3) -> [News; 2] {
     let text = to_toml(sensor, origin);
-    let path = free_name(Path::new(""), stem, "camera", "toml");
-    let written = written(luminaire::files::save_text(&path, &text), &path);
-    [News::Done(text), written]
+    let saved = save_numbered(names(Path::new(""), stem, "camera", "toml"), |path| save_text(path, &text));
+    [News::Done(text), written(saved)]
 }
 
 /// Writes a picture of a film to a file whose name begins with `stem`. The news are the file's name or why it was not written.
@@ -25,29 +25,26 @@ pub fn save_picture(stem: &str, saved: Saved, film: &Film, wanted: &Wanted) -> N
         Saved::Png => "png",
         Saved::Exr => "exr",
     };
-    let path = free_name(Path::new(""), stem, "view", ending);
-    let result = if saved == Saved::Exr || wanted.shown == Shown::Picture {
-        film.save(&path, wanted.exposure)
-    } else {
-        picture::save_png(&path, &develop(film, None, wanted.shown, wanted.exposure).image)
-    };
-    written(result, &path)
+    written(save_numbered(names(Path::new(""), stem, "view", ending), |path| {
+        if saved == Saved::Exr || wanted.shown == Shown::Picture {
+            film.save(path, wanted.exposure)
+        } else {
+            picture::save_png(path, &develop(film, None, wanted.shown, wanted.exposure).image)
+        }
+    }))
 }
 
 /// The news of a file: its name, or why it was not written.
-fn written(result: Result<()>, path: &Path) -> News {
-    match result {
-        Ok(()) => News::Done(format!("{}\n", path.display())),
+fn written(saved: Result<PathBuf>) -> News {
+    match saved {
+        Ok(path) => News::Done(format!("{}\n", path.display())),
         Err(error) => News::Said(format!("error: {error}")),
     }
 }
 
-/// The first of `STEM-KIND-1.ENDING`, `STEM-KIND-2.ENDING`, ... in `folder` that does not exist yet.
-fn free_name(folder: &Path, stem: &str, kind: &str, ending: &str) -> PathBuf {
-    let names = (1u64..).map(|number| folder.join(format!("{stem}-{kind}-{number}.{ending}")));
-    // A symbolic link that leads nowhere counts as a file, too, and is not replaced.
-    let mut free = names.filter(|path| path.symlink_metadata().is_err());
-    free.next().expect("numbers do not end before names do")
+/// `STEM-KIND-1.ENDING`, `STEM-KIND-2.ENDING`, ... in `folder`.
+fn names(folder: &Path, stem: &str, kind: &str, ending: &str) -> impl Fn(u64) -> PathBuf {
+    move |number| folder.join(format!("{stem}-{kind}-{number}.{ending}"))
 }
 
 #[cfg(test)]
@@ -58,11 +55,15 @@ mod tests {
     fn files_are_numbered() {
         let folder = tempfile::tempdir().unwrap();
         let name = |number| folder.path().join(format!("a-view-{number}.png"));
+        let save = || {
+            save_numbered(names(folder.path(), "a", "view", "png"), |path| {
+                picture::save_linear(path, 1, 1, &[0.0; 3], 0.0)
+            })
+        };
         for number in 1..4 {
-            assert_eq!(free_name(folder.path(), "a", "view", "png"), name(number));
-            std::fs::write(name(number), "").unwrap();
+            assert_eq!(save().unwrap(), name(number));
         }
         std::fs::remove_file(name(2)).unwrap();
-        assert_eq!(free_name(folder.path(), "a", "view", "png"), name(2));
+        assert_eq!(save().unwrap(), name(2));
     }
 }

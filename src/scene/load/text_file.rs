@@ -207,7 +207,7 @@ mod tests {
     fn files_that_memory_cannot_hold_are_refused() {
         assert!(check_size(1 << 30, Some(8 << 30)).is_ok() && check_size(1 << 30, None).is_ok());
         let error = check_size(2 << 30, Some(8 << 30)).unwrap_err();
-        assert!(["2.0 GiB", "10.0 GiB", "8.0 GiB are free"].iter().all(|part| error.contains(part)), "{error}");
+        assert!(["2048.0 MiB", "10.0 GiB", "8192.0 MiB are free"].iter().all(|part| error.contains(part)), "{error}");
         assert!(check_size(5 << 30, None).unwrap_err().contains("at most 4 GiB"));
     }
 

@@ -90,16 +90,11 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     Ok(if failed + worse > 0 { ExitCode::FAILURE } else { ExitCode::SUCCESS })
 }
 
-/// Checks that the files can be written, and that none of them is one that the run reads or, in the folder of no choice, one of somebody else's.
+/// Checks that the files can be written, and that none of them is one that the run reads or, but for the page, one of somebody else's: a folder names no file.
 fn check_files(options: &Options, folder: &Path, settings: &Settings) -> Result<()> {
     let mut outputs = Outputs::default();
-    let default = options.out.is_none().then_some("--out");
     for name in ["index.html", "figures.csv", "points.csv", "bench.json"] {
-        let path = folder.join(name);
-        match default {
-            Some(option) => outputs.add_default(option, &path)?,
-            None => outputs.add("--out", &path)?,
-        }
+        outputs.add_default("--out", &folder.join(name))?;
     }
     if let Some(page) = &options.page {
         outputs.add("--page", page)?;
@@ -108,7 +103,7 @@ fn check_files(options: &Options, folder: &Path, settings: &Settings) -> Result<
         let begins = |section: &Definition| name.strip_prefix(section.name).is_some_and(|rest| rest.starts_with('-'));
         name.ends_with(".svg") && SECTIONS.iter().any(begins)
     };
-    outputs.add_those_in(folder, default, is_chart)?;
+    outputs.add_those_in(folder, "--out", is_chart)?;
     let scenes = settings.scenes.iter().flat_map(|scene| &scene.scene.files);
     let inputs = scenes.map(|path| ("a file of a scene", &**path));
     let baseline = options.baseline.iter().map(|path| ("the --baseline", &**path));

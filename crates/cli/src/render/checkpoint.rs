@@ -2,6 +2,7 @@
 
 use super::options::Options;
 use super::outputs::is_exr;
+use crate::shared::interrupts;
 use crate::shared::outputs::Outputs;
 use crate::shared::printing::Notes;
 use luminaire::files::{self, Lock};
@@ -46,9 +47,11 @@ impl<'a> Checkpoint<'a> {
         self.due = Instant::now() + self.every;
     }
 
-    /// Saves the render.
+    /// Saves the render. An interrupt meanwhile takes effect afterwards.
     pub fn save(&self, rendered: &Rendered) -> Result<()> {
-        part::save(self.path, rendered, &self.provenance)
+        interrupts::hold_off(|| part::save(self.path, rendered, &self.provenance))?;
+        interrupts::saved();
+        Ok(())
     }
 }
 

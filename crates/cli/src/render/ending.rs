@@ -40,8 +40,16 @@ pub fn finish(mut outcome: Outcome, pictures: &[PathBuf], notes: Notes) -> Resul
     if done.is_err() && kept {
         notes.note(&format!("the samples are in the checkpoint; {again} writes the pictures again"));
     }
-    done?;
-    saved.transpose()?;
+    let mut failures = [done.err(), saved.and_then(Result::err)].into_iter().flatten();
+    if let (End::Failed(lost), Some(failure)) = (&outcome.rendered.end, failures.next()) {
+        // Neither may hide the other.
+        printing::error(lost);
+        std::iter::once(failure).chain(failures).for_each(printing::error);
+        return Ok(ExitCode::from(DEVICE_FAILED));
+    }
+    if let Some(failure) = failures.next() {
+        return Err(failure);
+    }
     if !notes.quiet {
         print(&summary::summary(&outcome, written))?;
     }
@@ -52,6 +60,8 @@ pub fn finish(mut outcome: Outcome, pictures: &[PathBuf], notes: Notes) -> Resul
                 "interrupted before the first sample; no picture is written"
             } else if written.is_empty() {
                 "interrupted; the part is not finished and not written"
+            } else if outcome.options.wants_aovs() {
+                "interrupted; the picture holds what was done until then, without layers and not denoised"
             } else {
                 "interrupted; the picture holds what was done until then"
             });

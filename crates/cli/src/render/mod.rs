@@ -46,6 +46,8 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     let mut outputs = Outputs::default();
     let mut pictures = vec![];
     let mut locks = vec![];
+    // Before locks are taken, which an interrupt would leave.
+    interrupts::listen(notes)?;
     if options.pixel.is_none() {
         pictures = outputs::pictures(options, &mut outputs)?;
         outputs::declare_others(options, &mut outputs)?;
@@ -53,7 +55,6 @@ pub fn run(options: &Options) -> Result<ExitCode> {
         locks = checkpoint::lock(options, notes)?;
         checkpoint::check(options)?;
     }
-    interrupts::listen(notes)?;
 
     let mut seconds = Seconds::default();
     let start = Instant::now();
@@ -139,13 +140,15 @@ fn trace(
     }
     // The checkpoint comes first: whatever fails afterwards, the samples are saved.
     let checkpoint = checkpoint.filter(|_| rendered.progress.samples > 0);
-    let saved = checkpoint.map(|checkpoint| interrupts::hold_off(|| checkpoint.save(&rendered)));
+    let saved = checkpoint.map(|checkpoint| checkpoint.save(&rendered));
     // Not after a failure, for the device would fail again, nor after an interrupt, which should end the run soon.
     let mut layers = None;
     if options.wants_aovs() && !matches!(rendered.end, End::Failed(_) | End::Stopped) {
         let size = (rendered.film.width, rendered.film.height);
-        match aovs(&mut tracer, size, rendered.film.most_samples()) {
-            Ok(found) => layers = Some(found),
+        match aovs(&mut tracer, size, rendered.film.most_samples(), &interrupts::STOP) {
+            // Samples are complete then, and the files are written without layers.
+            Ok(None) => rendered.end = End::Stopped,
+            Ok(found) => layers = found,
             Err(error) => rendered.end = End::Failed(error),
         }
     }

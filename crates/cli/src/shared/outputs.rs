@@ -3,10 +3,10 @@
 use luminaire::files::{Place, check_writable};
 use luminaire::{Error, Result};
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// By what the program knows the files that it has written: one of these is among their first bytes.
-const MARKS: [&str; 7] = [
+const MARKS: [&str; 8] = [
     // PNG.
     "Software\0luminaire",
     // Charts, and the pages and numbers of `bench` and `stability`.
@@ -16,6 +16,8 @@ const MARKS: [&str; 7] = [
     "section,of,quantity,unit,median,least,most,rounds\n",
     "chart,method,x,y,error\n",
     "# Where methods fail\n",
+    // Manual pages, whose title says of what program they are.
+    " 1  \"luminaire ",
 ];
 /// They are looked for in so many bytes.
 const MOST_BYTES: u64 = 1 << 12;
@@ -27,7 +29,7 @@ struct Output {
     place: Place,
     /// The option that would name another file, where no option has named this one.
     default: Option<&'static str>,
-    name: String,
+    path: PathBuf,
 }
 
 /// All files that a run will write.
@@ -52,21 +54,34 @@ impl Outputs {
         self.push(path.display().to_string(), path, Some(option))
     }
 
-    /// Declares those files of a folder that are there and have one of the names that may be written.
+    /// Declares those files of a folder that are there and have one of the names that may be written, as by [`Outputs::add_default`].
     ///
     /// # Errors
-    /// As for [`Outputs::add`].
+    /// As for [`Outputs::add`]; also if a file that was declared before has one of these names, there or not.
     pub fn add_those_in(
         &mut self,
         folder: &Path,
-        default: Option<&'static str>,
+        default: &'static str,
         may_be_written: impl Fn(&str) -> bool,
     ) -> Result<()> {
+        let whole = std::fs::canonicalize(folder).ok();
+        let taken = |output: &&Output| {
+            let Some(path) = output.place.whole() else { return false };
+            path.parent() == whole.as_deref()
+                && path.file_name().and_then(|name| name.to_str()).is_some_and(&may_be_written)
+        };
+        if let Some(output) = self.0.iter().find(taken) {
+            return Err(Error::Usage(format!(
+                "{}: that is a name of the files that are written to {}: give another name",
+                output.said,
+                folder.display()
+            )));
+        }
         let Ok(entries) = std::fs::read_dir(folder) else { return Ok(()) };
         for entry in entries.flatten() {
             if entry.file_name().to_str().is_some_and(&may_be_written) {
                 let path = folder.join(entry.file_name());
-                self.push(path.display().to_string(), &path, default)?;
+                self.push(path.display().to_string(), &path, Some(default))?;
             }
         }
         Ok(())
@@ -81,7 +96,7 @@ impl Outputs {
             )));
         }
         check_writable(path)?;
-        self.0.push(Output { said, place, default, name: path.display().to_string() });
+        self.0.push(Output { said, place, default, path: path.to_owned() });
         Ok(())
     }
 
@@ -102,12 +117,13 @@ impl Outputs {
                 )));
             }
         }
-        for Output { name, default, .. } in &self.0 {
+        for Output { path, default, .. } in &self.0 {
             let Some(option) = default else { continue };
-            if Path::new(name).exists() && !is_ours(Path::new(name)) {
+            if path.exists() && !is_ours(path) {
                 return Err(Error::Usage(format!(
-                    "{name}: there is a file of this name that luminaire has not written, and without {option} it would be replaced: give another \
-                     name by {option}, or move the file away"
+                    "{}: there is a file of this name that luminaire has not written, and that nobody has named to be replaced: give another place \
+                     by {option}, or move the file away",
+                    path.display()
                 )));
             }
         }
@@ -143,6 +159,23 @@ mod tests {
         assert!(code == 2 && said.contains("a.png") && said.contains("by -o"), "{said}");
         luminaire::picture::save_linear(&path, 1, 1, &[0.0; 3], 0.0).unwrap();
         assert!(check(true).is_ok() && check(false).is_ok());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn names_that_are_no_text_spare_the_files_of_others_too() {
+        use std::os::unix::ffi::OsStrExt;
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(std::ffi::OsStr::from_bytes(b"caf\xe9.png"));
+        // Not every file system takes such names.
+        if std::fs::write(&path, "precious").is_err() {
+            return;
+        }
+        let mut outputs = Outputs::default();
+        outputs.add_default("-o", &path).unwrap();
+        assert_eq!(outputs.check([]).unwrap_err().exit_code(), 2);
+        luminaire::picture::save_linear(&path, 1, 1, &[0.0; 3], 0.0).unwrap();
+        assert!(outputs.check([]).is_ok());
     }
 
     #[test]
