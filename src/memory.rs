@@ -14,7 +14,7 @@ const ARENA: u64 = 64 << 20;
 
 /// Bytes that a process may still take without swapping; known on Linux only. Counts the limit of the control group, which
 /// containers and batch systems set, and those of the process itself (`ulimit -v`, `ulimit -d`).
-pub(crate) fn available() -> Option<u64> {
+pub fn available() -> Option<u64> {
     let text = std::fs::read_to_string("/proc/meminfo").ok()?;
     let machine = kib(&text, "MemAvailable:")?;
     [Some(machine), group_available(), address_space()].into_iter().flatten().min()
@@ -110,7 +110,7 @@ fn kib(text: &str, name: &str) -> Option<u64> {
 }
 
 /// Bytes for a message.
-pub(crate) fn gib(bytes: u64) -> String {
+pub fn gib(bytes: u64) -> String {
     match bytes as f64 / f64::from(1 << 30) {
         // So that numbers that are nearly the same differ.
         gib if gib < 10.0 => format!("{:.1} MiB", bytes as f64 / f64::from(1 << 20)),

@@ -82,6 +82,11 @@ pub fn save(path: &Path, rendered: &Rendered, provenance: &Provenance) -> Result
     film.save_exr(path, channels, about, digest::seal)
 }
 
+/// Whether a file is a part or a checkpoint, by its head.
+pub fn is_part(path: &Path) -> bool {
+    path.is_file() && picture::read_texts(path).is_ok_and(|texts| texts.contains_key(PROVENANCE))
+}
+
 /// Reads the head of a file, after all of it has been checked against its digest.
 pub(super) fn about(path: &Path) -> Result<(Provenance, Counts)> {
     // A name that leads to something endless would never be read to its end.

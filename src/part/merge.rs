@@ -2,10 +2,33 @@
 
 use super::file::{about, read};
 use super::provenance::Provenance;
+use crate::memory::{available, gib};
 use crate::render::Rendered;
+use crate::sampling::PARTS;
 use crate::{Error, Result};
 use std::ops::Range;
 use std::path::PathBuf;
+
+/// Bytes a pixel of a film, its sums and its numbers of samples.
+const FILM: u64 = 24 * PARTS as u64 + 4;
+/// Beside the sums: decoded blocks of a file, and what is read of it before it is put into the film. Measured.
+const FIXED: u64 = 40 << 20;
+
+/// Refuses parts of which the memory that is free cannot hold the whole, one of them, and the channels that it is read from.
+fn fits((width, height): (u32, u32), parts: usize, available: Option<u64>) -> Result<()> {
+    let films = if parts > 1 { 3 } else { 2 };
+    let needed = FIXED + films * FILM * u64::from(width) * u64::from(height);
+    match available.filter(|free| needed > *free) {
+        None => Ok(()),
+        Some(free) => Err(Error::Limit {
+            what: format!("merging parts of {width} x {height} pixels"),
+            needed: format!("{} of memory", gib(needed)),
+            device: "this machine".into(),
+            limit: format!("{}, what is free now", gib(free)),
+            advice: "end what else takes memory, or merge them on another machine".into(),
+        }),
+    }
+}
 
 /// Joins parts, given in any order, that together hold every sample from number 0 on once. Only one of them is in memory at a time.
 ///
@@ -18,9 +41,12 @@ pub fn merge(paths: &[PathBuf]) -> Result<(Rendered, Provenance)> {
         let (provenance, counts) = about(path)?;
         let whole = |end: &u32| *end > counts.first_sample && counts.wanted_end.is_none_or(|wanted| *end >= wanted);
         let Some(end) = counts.end_sample.filter(whole) else {
+            let wanted = counts.wanted_end.map_or("END".into(), |wanted| wanted.to_string());
             return Err(Error::Usage(format!(
-                "{}: its render was not finished: go on with it (--checkpoint {} --resume -o ANOTHER.exr), then merge",
+                "{}: its render was not finished: go on with it (the command that began it, with --samples {}..{wanted} --checkpoint {} --resume \
+                 -o ANOTHER.exr), then merge",
                 path.display(),
+                counts.first_sample,
                 path.display()
             )));
         };
@@ -61,6 +87,9 @@ pub fn merge(paths: &[PathBuf]) -> Result<(Rendered, Provenance)> {
         }
         next = range.end;
     }
+    if let Some((provenance, _)) = &first {
+        fits((provenance.width, provenance.height), parts.len(), available())?;
+    }
     let mut whole: Option<Rendered> = None;
     for (range, path) in parts {
         let (part, _) = read(path)?;
@@ -77,4 +106,21 @@ pub fn merge(paths: &[PathBuf]) -> Result<(Rendered, Provenance)> {
         whole.zip(first).ok_or_else(|| Error::Usage("there is no part to merge".into()))?;
     whole.progress.error = whole.film.error();
     Ok((whole, provenance))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn memory_is_asked_for_what_merging_takes() {
+        let size = (1000, 1000);
+        assert!(fits(size, 2, Some(FIXED + 300_000_000)).is_ok() && fits(size, 2, None).is_ok());
+        let said = fits(size, 2, Some(FIXED + 299_999_999)).unwrap_err().to_string();
+        assert!(
+            said.contains("1000 x 1000") && said.contains("another machine") && !said.contains("--width"),
+            "{said}"
+        );
+        assert!(fits(size, 1, Some(FIXED + 200_000_000)).is_ok());
+    }
 }

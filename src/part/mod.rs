@@ -11,6 +11,6 @@ mod file;
 mod merge;
 mod provenance;
 
-pub use file::{read, resume, save};
+pub use file::{is_part, read, resume, save};
 pub use merge::merge;
 pub use provenance::Provenance;

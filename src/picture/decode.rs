@@ -2,10 +2,11 @@
 
 use super::encoding::{Curve, Encoding};
 use super::first_bytes::first_bytes;
+use super::pixels::{self, io_in_words};
 use super::radiance::{self, Radiance};
 use super::srgb::linear;
 use super::{foreign, icc, openexr, png_colours};
-use crate::memory::{available, gib};
+use crate::memory::available;
 use glam::{DMat3, DVec3};
 use half::f16;
 use image::{DynamicImage, ImageDecoder, ImageError, ImageReader, Limits};
@@ -85,7 +86,9 @@ impl ImageFile {
         reader.limits(limits.clone());
         let mut decoder = reader.into_decoder().map_err(|error| match error {
             ImageError::Limits(_) => too_large(),
-            error => foreign::named(path, &start).unwrap_or_else(|| in_words(error)),
+            error => foreign::named(path, &start)
+                .or_else(|| foreign::unknown(path, &start))
+                .unwrap_or_else(|| in_words(error)),
         })?;
         let (width, height) = decoder.dimensions();
         let texels = u64::from(width) * u64::from(height);
@@ -305,14 +308,7 @@ impl ImageFile {
 /// Refuses what the memory that is free cannot take: the picture as it is stored, as four channels of so many bytes, and as half floats.
 fn check_memory((width, height): (u32, u32), stored: u64, channel: u64, available: Option<u64>) -> Result<(), String> {
     let needed = stored + u64::from(width) * u64::from(height) * (4 * channel + 8);
-    match available {
-        Some(free) if needed > free => Err(format!(
-            "it has {width} x {height} texels, which take {} of memory, of which {} are free: make it smaller",
-            gib(needed),
-            gib(free)
-        )),
-        _ => Ok(()),
-    }
+    pixels::fits((width, height), needed, available)
 }
 
 fn too_large() -> String {
@@ -324,6 +320,12 @@ fn in_words(error: ImageError) -> String {
     match error {
         ImageError::Limits(_) => too_large(),
         ImageError::Unsupported(_) => format!("it is in no format that can be read here ({error})"),
+        ImageError::IoError(error) => io_in_words(error),
+        // What decoders say of their own data is for those who write decoders.
+        ImageError::Decoding(error) => match error.to_string() {
+            what if what.contains(['{', '\n']) => "it is damaged or cut off".into(),
+            what => format!("it is damaged or cut off ({what})"),
+        },
         _ => error.to_string(),
     }
 }

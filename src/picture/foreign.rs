@@ -10,6 +10,36 @@ pub(super) fn named(path: &Path, start: &[u8]) -> Option<String> {
     Some(format!("it is {what}, which is not read here: {how}"))
 }
 
+/// Formats that are read, for messages.
+const KNOWN: &str = "OpenEXR, Radiance, PFM, PNG, JPEG, TIFF, BMP, TGA, GIF, PNM, WebP";
+
+/// That a file's first bytes are those of no picture, in words that can follow its name; none if they are.
+pub(super) fn unknown(path: &Path, start: &[u8]) -> Option<String> {
+    let ending = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+    if start.is_empty() {
+        return Some("it is empty".into());
+    }
+    // A TGA says nothing of itself.
+    if image::guess_format(start).is_ok() || ending == "tga" {
+        return None;
+    }
+    let claimed = match ending.as_str() {
+        "exr" => "OpenEXR",
+        "hdr" | "pic" | "rgbe" => "Radiance",
+        "png" => "PNG",
+        "jpg" | "jpeg" => "JPEG",
+        "tif" | "tiff" => "TIFF",
+        "bmp" => "BMP",
+        "gif" => "GIF",
+        "webp" => "WebP",
+        "pfm" | "ppm" | "pgm" | "pbm" | "pnm" => "PNM or PFM",
+        _ => return Some(format!("it is no picture: its first bytes are those of none of {KNOWN}")),
+    };
+    Some(format!(
+        "it is no {claimed} picture, which its name says, and none of another format: it is damaged, or something else"
+    ))
+}
+
 const MAGICK: &str = "convert it, for example with `magick IN out.png`";
 const OIIO: &str = "convert it, for example with `oiiotool IN -o out.png` (or out.exr)";
 
@@ -106,6 +136,12 @@ mod tests {
             assert!(said.contains(part) && said.contains("not read here"), "{name}: {said}");
         }
         assert_eq!(named(Path::new("a.png"), b"hello"), None);
+        for (name, part) in [("a.exr", "no OpenEXR"), ("a.HDR", "no Radiance"), ("a.png", "no PNG"), ("a.bin", "PFM")] {
+            assert!(unknown(Path::new(name), b"hello").is_some_and(|said| said.contains(part)), "{name}");
+        }
+        assert_eq!(unknown(Path::new("a.png"), b"").as_deref(), Some("it is empty"));
+        assert_eq!(unknown(Path::new("a.tga"), b"hello"), None);
+        assert_eq!(unknown(Path::new("a.exr"), b"GIF89a"), None);
         assert_eq!(named(Path::new("a"), b""), None);
     }
 }

@@ -17,6 +17,7 @@ mod read;
 mod srgb;
 mod write;
 
+pub use crate::memory::{available as free_memory, gib as bytes_in_words};
 pub use format::{Format, check_output};
 pub use openexr::{Attribute, Exr, Values};
 pub(crate) use openexr::{read_channels, read_texts};

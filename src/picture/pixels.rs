@@ -1,4 +1,7 @@
-//! A picture as numbers to compute with.
+//! A picture as numbers to compute with, and why there is none.
+
+use crate::memory::gib;
+use std::io::{Error, ErrorKind};
 
 /// Most pixels of a picture: a small file can claim to be an enormous one.
 pub(super) const MOST_PIXELS: u64 = 1 << 28;
@@ -23,4 +26,25 @@ pub struct Picture {
 /// Why a picture is refused that says it is enormous.
 pub(super) fn too_large(width: u64, height: u64) -> String {
     format!("it says that it has {width} x {height} pixels; at most {MOST_PIXELS} are read")
+}
+
+/// Refuses what the memory that is free cannot take, in bytes.
+pub(super) fn fits((width, height): (u32, u32), needed: u64, available: Option<u64>) -> Result<(), String> {
+    match available {
+        Some(free) if needed > free => Err(format!(
+            "it has {width} x {height} texels, which take {} of memory, of which {} are free: make it smaller",
+            gib(needed),
+            gib(free)
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// What it means that a decoder cannot go on reading: a file that ends too early, or leads to where it has nothing.
+pub(super) fn io_in_words(error: Error) -> String {
+    match error.kind() {
+        ErrorKind::UnexpectedEof => "it is damaged or cut off: it ends before the picture does".into(),
+        ErrorKind::InvalidData | ErrorKind::InvalidInput => "it is damaged or cut off".into(),
+        _ => error.to_string(),
+    }
 }

@@ -322,3 +322,36 @@ fn zeros_describe_nothing() {
     }
     assert_eq!(read("Ks .5 .5 .5\nNs 10").0.lambert, Vec3::ZERO);
 }
+
+#[test]
+fn lines_may_be_joined() {
+    let scene = with_mtl("newmtl m\nKd 0.1 \\\n 0.2 0.3\nNi x\n").load("mesh.obj");
+    assert_eq!(first_material(&scene).lambert, Vec3::new(0.1, 0.2, 0.3));
+    warned(&scene, &["mesh.mtl:4:", "Ni"]);
+}
+
+/// As with textures: other letters, and paths of other machines. It is a guess, and said.
+#[test]
+fn a_library_of_nearly_this_name_is_found() {
+    for (line, used) in [
+        ("mtllib dup2.mtl", "DUP2.MTL"),
+        ("mtllib C:\\models\\my lib.mtl", "my lib.mtl"),
+        ("mtllib /home/somebody/My\\ Lib.mtl", "my lib.mtl"),
+    ] {
+        let scene =
+            obj(format!("{line}\nusemtl m\n{TRIANGLE}")).with(used, "newmtl m\nKd 0.5 0.25 0.125\n").load("mesh.obj");
+        assert_eq!(first_material(&scene).lambert, Vec3::new(0.5, 0.25, 0.125), "{line}");
+        warned(&scene, &["mesh.obj:1: `", &format!("is not there; `{used}` is used")]);
+    }
+    let blank = obj(format!("mtllib my\\ lib.mtl\nusemtl m\n{TRIANGLE}")).with("my lib.mtl", "newmtl m\nKd 1 0 0\n");
+    assert!(!blank.load("mesh.obj").warnings.iter().any(|warning| warning.contains("is used")));
+}
+
+#[test]
+fn a_library_that_is_missing_is_said_once_for_a_mesh() {
+    let objects = "[[object]]\nmesh = \"mesh.obj\"\n[[object]]\nmesh = \"./mesh.obj\"\nsmooth = 30\n";
+    let text = format!("{SENSOR}{LIGHT}{objects}");
+    let scene = obj(format!("mtllib none.mtl\n{TRIANGLE}")).with("scene.toml", text).load("scene.toml");
+    let said = scene.warnings.iter().filter(|warning| warning.contains("none.mtl")).count();
+    assert_eq!(said, 1, "{:?}", scene.warnings);
+}

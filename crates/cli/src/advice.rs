@@ -69,6 +69,53 @@ const OPTIONS: &[(&[&str], &str)] = &[
     (&["denoise", "denoiser", "oidn"], "that is --denoised FILE"),
 ];
 
+const FILES: &[&str] =
+    &["o", "out", "output", "file", "outfile", "output-file", "save", "dir", "folder", "output-dir", "outdir"];
+const SECONDS: &[&str] = &["time", "timeout", "max-time", "time-limit", "seconds", "duration", "spp", "samples"];
+const VERBOSE: &[&str] = &["verbose", "v", "debug", "log", "log-level"];
+
+/// What stands for options in one subcommand alone: its name, the options, the advice.
+const OWN: &[(&str, &[&str], &str)] = &[
+    (
+        "compare",
+        &[
+            "noise",
+            "noise-threshold",
+            "max-error",
+            "target-noise",
+            "error",
+            "threshold",
+            "tolerance",
+            "epsilon",
+            "limit",
+        ],
+        "limits are --max-relmse X, --max-rmse X, --max-bias X and --max-flip X",
+    ),
+    ("compare", FILES, "the picture of the errors is --heatmap FILE.png, and the figures are --stats FILE.json"),
+    ("compare", &["diff", "map", "error-map", "heat-map", "image"], "the picture of the errors is --heatmap FILE.png"),
+    ("compare", VERBOSE, "all is said already; --worst N lists more pixels, and --stats FILE.json has the figures"),
+    ("stability", FILES, "the folder is --out DIR, and the page is --page FILE"),
+    ("stability", SECONDS, "it takes what its sweeps take: name those to run, as --list shows them"),
+    ("bench", FILES, "the folder is --out DIR, and the page is --page FILE.md"),
+    ("bench", SECONDS, "the effort is --quick, --long or --rounds N, and --section NAME runs a part"),
+    ("man", FILES, "the folder stands alone: luminaire man DIR"),
+    ("completions", FILES, "the script is printed: luminaire completions SHELL > FILE"),
+    (
+        "view",
+        FILES,
+        "keys write files, as `luminaire view --help` says; without a window it is `luminaire render SCENE -o FILE.png`",
+    ),
+    (
+        "view",
+        &["time", "timeout", "seconds", "noise"],
+        "the picture gets better until the window is closed; --spp N stops it",
+    ),
+    ("inspect", VERBOSE, "all is said already"),
+    ("inspect", FILES, "it is printed: luminaire inspect SCENE > FILE"),
+    ("devices", VERBOSE, "all is said already"),
+    ("devices", FILES, "it is printed: luminaire devices > FILE"),
+];
+
 /// Names that --backend cannot have, and what is meant.
 const BACKENDS: &[(&[&str], &str)] = &[
     (
@@ -91,7 +138,15 @@ const BACKENDS: &[(&[&str], &str)] = &[
 /// `program`.
 pub fn with_advice(error: clap::Error, words: &[String], mut program: clap::Command) -> clap::Error {
     program.build();
-    let Some(advice) = advice(&error, words, &program) else { return error };
+    let advice = advice(&error, words, &program);
+    // Clap takes an option that it does not know for a name that begins with a dash, which nobody means.
+    let as_a_value = |kind: ContextKind, value: &ContextValue| {
+        kind == ContextKind::Suggested
+            && matches!(value, ContextValue::StyledStrs(tips) if tips.iter().any(|tip| tip.to_string().contains("as a value, use")))
+    };
+    if advice.is_none() && !error.context().any(|(kind, value)| as_a_value(kind, value)) {
+        return error;
+    }
     let name = words.get(1).map_or("", String::as_str);
     let mut advised = clap::Error::new(error.kind()).with_cmd(program.find_subcommand(name).unwrap_or(&program));
     let guesses = [
@@ -100,10 +155,15 @@ pub fn with_advice(error: clap::Error, words: &[String], mut program: clap::Comm
         ContextKind::SuggestedValue,
         ContextKind::Suggested,
     ];
-    for (kind, value) in error.context().filter(|(kind, _)| !guesses.contains(kind)) {
-        advised.insert(kind, value.clone());
+    for (kind, value) in error.context() {
+        let dropped = if advice.is_some() { guesses.contains(&kind) } else { as_a_value(kind, value) };
+        if !dropped {
+            advised.insert(kind, value.clone());
+        }
     }
-    advised.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![advice.into()]));
+    if let Some(advice) = advice {
+        advised.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![advice.into()]));
+    }
     advised
 }
 
@@ -215,10 +275,52 @@ fn argument(word: &str, words: &[String], program: &clap::Command) -> Option<Str
     if plain != name && program.find_subcommand(here).is_some_and(|command| has(command, &plain)) {
         return Some(format!("it is written --{plain}"));
     }
-    row(OPTIONS, &plain)
+    let Some(command) = program.find_subcommand(here) else { return row(OPTIONS, &plain) };
+    if let Some((.., advice)) = OWN.iter().find(|(own, words, _)| *own == here && words.contains(&plain.as_str())) {
+        return Some((*advice).to_owned());
+    }
+    row(OPTIONS, &plain).filter(|advice| has_all_of(command, advice)).or_else(|| {
+        let short = |command: &clap::Command| {
+            dashes == 1 && command.get_arguments().any(|arg| arg.get_short().map(String::from).as_deref() == Some(name))
+        };
+        let owner = program.get_subcommands().find(|command| has(command, &plain) || short(command))?.get_name();
+        Some(format!(
+            "{word} is an option of `luminaire {owner}`; `luminaire {here} --help` lists those that there are here"
+        ))
+    })
+}
+
+/// Whether a subcommand has every option that an advice names; what another build has is an advice for `render` and `view`, which differ in it.
+fn has_all_of(command: &clap::Command, advice: &str) -> bool {
+    if advice.contains("cargo build") {
+        return ["render", "view"].contains(&command.get_name());
+    }
+    let words = advice.split(|c: char| !c.is_ascii_alphanumeric() && c != '-').filter(|word| word.starts_with('-'));
+    words.into_iter().all(|word| match word.strip_prefix("--") {
+        Some("" | "help") => true,
+        Some(long) => command.get_arguments().any(|arg| arg.get_long() == Some(long)),
+        None => command.get_arguments().any(|arg| arg.get_short().map(String::from).as_deref() == word.get(1..)),
+    })
 }
 
 /// Whether the first word behind the subcommand that is no option is a picture.
 fn first_is_picture(words: &[String]) -> bool {
     words.iter().skip(2).find(|word| !word.starts_with('-')).is_some_and(|word| is_picture(word))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    /// But for other command lines, which stand between backticks.
+    #[test]
+    fn own_advice_names_options_that_are_there() {
+        let program = crate::Args::command();
+        for (own, _, advice) in OWN {
+            let command = program.find_subcommand(own).unwrap();
+            let here: String = advice.split('`').step_by(2).collect();
+            assert!(has_all_of(command, &here), "{own}: {advice}");
+        }
+    }
 }

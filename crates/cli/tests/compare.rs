@@ -189,7 +189,29 @@ fn files_that_are_no_pictures() {
     std::fs::write(folder.path().join("text.png"), "hello").unwrap();
     std::fs::write(folder.path().join("empty.hdr"), "").unwrap();
     std::fs::write(folder.path().join("short.pfm"), "PF\n8 4\n-1\n1234").unwrap();
+    for name in ["text.exr", "text.hdr", "text.bin", "text"] {
+        std::fs::write(folder.path().join(name), "hello").unwrap();
+    }
+    std::fs::write(
+        folder.path().join("short.hdr"),
+        b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 8\n0123456789abcdefghi",
+    )
+    .unwrap();
+    let path = folder.path().join("short.png");
+    image::RgbImage::from_fn(8, 4, |x, y| image::Rgb([x as u8 * 30, y as u8 * 50, 7])).save(&path).unwrap();
+    let mut png = std::fs::read(&path).unwrap();
+    std::fs::write(&path, &png[..png.len() / 2]).unwrap();
+    // The sum of the first chunk does not fit.
+    png[20] ^= 1;
+    std::fs::write(folder.path().join("flipped.png"), png).unwrap();
     for (name, part) in [
+        ("text.exr", "it is no OpenEXR picture"),
+        ("text.hdr", "it is no Radiance picture"),
+        ("text.bin", "it is no picture"),
+        ("text", "it is no picture"),
+        ("short.hdr", "it is damaged or cut off"),
+        ("short.png", "it is damaged or cut off"),
+        ("flipped.png", "it is damaged or cut off\n"),
         ("none.exr", "No such file"),
         (".", "folder"),
         ("short.exr", "damaged or truncated"),

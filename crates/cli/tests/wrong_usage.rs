@@ -132,6 +132,9 @@ fn options_of_the_error_that_mean_nothing() {
     fails(&["-o", "a.png", "--error-map", "a.png"], "twice");
     fails(&["--error-map", "good.png"], "twice");
     fails(&["--spp", "1", "--error-map", "e.png"], "--spp 2");
+    fails(&["--samples", "4..5", "-o", "a.exr", "--error-map", "e.png"], "two samples");
+    folder.write("one.toml", "[render]\nspp = 1\n[[object]]\nmesh = \"good.obj\"\n");
+    folder.fails(&["render", "one.toml", "--error-map", "e.png"], 2, &["--spp 2", "`spp = 1`"]);
     fails(&["--width", "16", "--pixel", "16,0", "--sample", "1"], "not on the film");
     fails(&["--pixel", "1,1", "--sample", "1", "--spp", "4"], "cannot be used with");
     fails(&["--pixel", "1,1"], "--sample");
@@ -143,6 +146,16 @@ fn a_film_beyond_memory() {
     let size = |height| ["render", "good.obj", "--backend", "cpu", "--width", "65536", "--height", height];
     folder.fails(&size("65535"), 1, &["65536 x 65535", "GiB", "--width"]);
     folder.fails(&size("65536"), 2, &["65536 x 65536", "2^32"]);
+}
+
+#[test]
+fn a_checkpoint_that_is_another_file() {
+    let folder = Folder::new();
+    luminaire::picture::save_linear(&folder.path().join("sky.exr"), 2, 1, &[1.0; 6], 0.0).unwrap();
+    folder.write("text.exr", "precious");
+    for name in ["sky.exr", "text.exr"] {
+        folder.fails(&["render", "good.obj", "--checkpoint", name], 2, &[name, "no checkpoint: give another name"]);
+    }
 }
 
 #[test]

@@ -146,7 +146,10 @@ impl Seen {
 
         let (taps, share) = sensitivity();
         let lanes: Vec<[f32; 4]> = flat.par_iter().map(|p| [p.x, p.y, p.z, p.z]).collect();
-        let blurred = columns(width, &rows(width, &lanes, &taps), &taps);
+        // What is not needed any more is given up at once: at sixteen bytes a pixel each, these are most of what FLIP takes.
+        let blurred = rows(width, &lanes, &taps);
+        drop(lanes);
+        let blurred = columns(width, &blurred, &taps);
         let to_rgb = TO_XYZ.inverse();
         let colours = blurred
             .par_iter()
@@ -157,14 +160,17 @@ impl Seen {
                 opponent((to_rgb * (n * WHITE)).clamp(Vec3::ZERO, Vec3::ONE))
             })
             .collect();
+        drop(blurred);
 
         let taps = detectors();
         // Along the rows: Gaussian, its first and its second derivative; across them the other way round.
         let along: Vec<[f32; 4]> = taps.iter().map(|&[g, first, second]| [g, first, second, 0.0]).collect();
         let across: Vec<[f32; 4]> = taps.iter().map(|&[g, first, second]| [first, g, g, second]).collect();
         let grey: Vec<[f32; 4]> = flat.par_iter().map(|p| [(p.x + 16.0) / 116.0; 4]).collect();
-        let filtered: Vec<[f32; 4]> =
-            rows(width, &grey, &along).into_par_iter().map(|[g, first, second, _]| [g, first, second, g]).collect();
+        drop(flat);
+        let mut filtered = rows(width, &grey, &along);
+        drop(grey);
+        filtered.par_iter_mut().for_each(|[g, _, _, last]| *last = *g);
         let features = columns(width, &filtered, &across)
             .par_iter()
             .map(|&[edge_y, edge_x, point_x, point_y]| [edge_x.hypot(edge_y), point_x.hypot(point_y)])

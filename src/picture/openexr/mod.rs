@@ -9,6 +9,8 @@ pub(crate) use channels::{read_channels, read_texts};
 pub(super) use picture::Opened;
 pub use writer::{Attribute, Exr};
 
+use super::pixels::io_in_words;
+
 /// The bytes with which a file begins.
 pub(super) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
@@ -28,6 +30,7 @@ fn in_words(error: ::exr::error::Error) -> String {
     match error {
         ::exr::error::Error::NotSupported(what) => format!("this kind of OpenEXR file cannot be read here ({what})"),
         ::exr::error::Error::Invalid(what) => format!("it is damaged or truncated ({what})"),
+        ::exr::error::Error::Io(error) => io_in_words(error),
         other => other.to_string(),
     }
 }

@@ -2,7 +2,8 @@
 
 use super::choice::Choice;
 use super::in_words;
-use crate::picture::pixels::{MOST_PIXELS, Picture, too_large};
+use crate::memory::available;
+use crate::picture::pixels::{MOST_PIXELS, Picture, fits, too_large};
 use crate::picture::primaries::Primaries;
 use ::exr::math::Vec2;
 use ::exr::meta::MetaData;
@@ -83,6 +84,9 @@ impl<'a> Opened<'a> {
             return Err(too_large(width, height));
         }
         self.window.check_whole()?;
+        // Three floats a pixel, and three of its error.
+        let numbers = if self.choice.error.is_some() { 6 } else { 3 };
+        fits((width, height), 4 * numbers * u64::from(width) * u64::from(height), available())?;
         let colours = |names: &[String; 3]| self.read(names, None, |[r, g, b, _]| [r, g, b]);
         let (mut rgb, mut error) = (colours(&self.choice.rgb)?, self.choice.error.as_ref().map(colours).transpose()?);
         let mut warnings = self.warnings.clone();

@@ -4,7 +4,7 @@ use super::far::{self, FilePlace};
 use super::material_draft::{Draft, DraftMaps};
 use super::text_file::shortened;
 use super::texture::Textures;
-use super::{mtl, obj};
+use super::{mtl, named_file, obj};
 use crate::Result;
 use crate::scene::{Maps, Material, Mesh, Object, Texture};
 use glam::{DAffine3, DVec3};
@@ -83,7 +83,7 @@ impl Loader {
         self.warnings.extend(warnings.into_iter().filter(|warning| first || warning.contains("`smooth`")));
         let mut named = HashMap::new();
         for (names, line) in &libraries {
-            self.library_line(path, *line, names, &mut named);
+            self.library_line((path, *line), names, first, &mut named);
         }
         let mut missing = Vec::new();
         let coloured = !mesh.colours.is_empty();
@@ -256,14 +256,23 @@ impl Loader {
         })
     }
 
-    /// Reads what one `mtllib` line names.
-    fn library_line(&mut self, obj: &Path, line: usize, names: &str, named: &mut HashMap<String, u32>) {
+    /// Reads what one `mtllib` line names. What is wrong with it is said where the OBJ is read for the `first` time.
+    fn library_line(
+        &mut self,
+        (obj, line): (&Path, usize),
+        names: &str,
+        first: bool,
+        named: &mut HashMap<String, u32>,
+    ) {
         let folder = obj.parent().unwrap_or(Path::new(""));
-        for name in library_names(folder, names) {
-            match self.library(&folder.join(&name)) {
+        for (library, guess) in named_file::libraries(folder, names) {
+            let mut said = guess.into_iter().collect::<Vec<_>>();
+            match self.library(&library) {
                 Ok(materials) => named.extend(materials),
-                Err(error) => self.warnings.push(format!("{}:{line}: {error}", obj.display())),
+                Err(error) => said.push(error.to_string()),
             }
+            let said = said.into_iter().filter(|_| first);
+            self.warnings.extend(said.map(|said| format!("{}:{line}: {said}", obj.display())));
         }
     }
 
@@ -298,30 +307,4 @@ pub(super) fn listed<'a>(names: impl ExactSizeIterator<Item = &'a str>) -> Strin
 /// One name for one file, however the path is spelled.
 fn identity(path: &Path) -> PathBuf {
     path.canonicalize().unwrap_or_else(|_| path.to_owned())
-}
-
-/// The file names on an `mtllib` line. Names may hold blanks and a line may hold several names, so the whole line is tried
-/// first, then the pieces that end in `.mtl`; backslashes are separators, or stand before a blank that belongs to the name.
-fn library_names(folder: &Path, line: &str) -> Vec<String> {
-    let plain = |name: &str| name.replace("\\ ", " ").replace('\\', "/");
-    let readable = |name: &str| if folder.join(name).is_file() { name.to_owned() } else { plain(name) };
-    let whole = readable(line);
-    if folder.join(&whole).is_file() {
-        return vec![whole];
-    }
-    let mut names = Vec::new();
-    let mut name = String::new();
-    for word in line.split_whitespace() {
-        if !name.is_empty() {
-            name.push(' ');
-        }
-        name.push_str(word);
-        if word.to_ascii_lowercase().ends_with(".mtl") {
-            names.push(readable(&std::mem::take(&mut name)));
-        }
-    }
-    if !name.is_empty() {
-        names.push(readable(&name));
-    }
-    names
 }

@@ -8,6 +8,7 @@ mod far;
 mod loader;
 mod material_draft;
 mod mtl;
+mod named_file;
 mod near_name;
 mod obj;
 mod other_formats;
@@ -38,11 +39,17 @@ pub fn load(path: &Path) -> Result<Scene> {
         _ => {
             // Who names a picture first has swapped two words, and is told so.
             let foreign = if is_picture(&ending) { None } else { other_formats::named(path) };
+            let otherwise = what_else(path, &ending);
+            // A name of which nothing is known is that of a file which is not there.
+            if foreign.is_none() && otherwise.is_empty() && !path.exists() {
+                let why = std::fs::metadata(path).map_or_else(|e| e.to_string(), |_| "it came this moment".into());
+                return Err(with_what_is_there(path)(Error::read(path, why)));
+            }
             let what = foreign.unwrap_or("not a scene".into());
             return Err(Error::Usage(format!(
                 "{}: {what}; expected a scene file ending in .toml or a mesh ending in .obj{}",
                 path.display(),
-                what_else(path, &ending)
+                otherwise
             )));
         }
     };

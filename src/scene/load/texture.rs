@@ -1,6 +1,6 @@
 //! Textures: which file a map means, what its options change, and the texels that both tracers see.
 
-use super::texel_faults;
+use super::{named_file, texel_faults};
 use crate::picture::decode::{CHUNK, ImageFile};
 use crate::scene::Texture;
 use glam::{Affine2, Vec2, Vec3};
@@ -120,47 +120,17 @@ impl MapFile {
     /// The file, and a warning if it is not quite the one that is named.
     fn find(&self) -> Result<(PathBuf, Option<String>), String> {
         let written = &self.names[0];
-        for name in self.names.iter().flat_map(|name| [name.clone(), name.replace('\\', "/")]) {
-            let path = self.folder.join(&name);
-            if path.is_file() {
-                return Ok((path, None));
-            }
+        if let Some(path) = self.names.iter().find_map(|name| named_file::exactly(&self.folder, name)) {
+            return Ok((path, None));
         }
-        for name in self.names.iter().map(|name| name.replace('\\', "/")) {
-            // Exporters write the paths of their own machine: the bare name beside the file is the next best guess.
-            let bare = name.rsplit('/').next().unwrap_or(&name);
-            let beside = || Some(self.folder.join(bare)).filter(|path| path.is_file());
-            let found = without_case(&self.folder, &name).or_else(beside).or_else(|| without_case(&self.folder, bare));
-            if let Some(path) = found {
-                let shown = path.strip_prefix(&self.folder).unwrap_or(&path).display();
-                let warning = format!("{}: `{written}` is not there; `{shown}` is used", self.at);
-                return Ok((path, Some(warning)));
-            }
+        if let Some(path) = self.names.iter().find_map(|name| named_file::nearly(&self.folder, name)) {
+            let warning = format!("{}: {}", self.at, named_file::instead(&self.folder, written, &path));
+            return Ok((path, Some(warning)));
         }
         // A name that exists but is no file deserves a better word than that it is missing.
         let path = self.folder.join(written);
         if path.exists() { Ok((path, None)) } else { Err("there is no such file".into()) }
     }
-}
-
-/// A file whose path differs from `name` only in the case of its letters; the first one in alphabetical order.
-fn without_case(folder: &Path, name: &str) -> Option<PathBuf> {
-    let mut path = folder.to_owned();
-    for part in name.split('/').filter(|part| !part.is_empty() && *part != ".") {
-        let exact = path.join(part);
-        if exact.exists() {
-            path = exact;
-            continue;
-        }
-        let mut names: Vec<_> = std::fs::read_dir(&path)
-            .ok()?
-            .filter_map(|entry| Some(entry.ok()?.file_name()))
-            .filter(|name| name.to_string_lossy().to_lowercase() == part.to_lowercase())
-            .collect();
-        names.sort();
-        path.push(names.first()?);
-    }
-    path.is_file().then_some(path)
 }
 
 impl Textures {

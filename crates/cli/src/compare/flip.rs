@@ -1,6 +1,7 @@
 //! FLIP of two pictures, at the exposures at which people look at them.
 
-use luminaire::picture::Picture;
+use luminaire::picture::{Picture, bytes_in_words};
+use luminaire::{Error, Result};
 use luminaire_measure::{flip, metrics};
 use serde::Serialize;
 
@@ -17,7 +18,28 @@ pub struct Flip {
     pub count: u32,
 }
 
+/// Bytes of memory that FLIP takes a pixel at most, beside the two pictures. Measured.
+const MEMORY: u64 = 180;
+
 impl Flip {
+    /// Refuses pictures for which the memory that is free is not enough.
+    ///
+    /// # Errors
+    /// [`Error::Limit`].
+    pub fn fits((width, height): (u32, u32), free: Option<u64>) -> Result<()> {
+        let needed = MEMORY * u64::from(width) * u64::from(height);
+        match free.filter(|free| needed > *free) {
+            None => Ok(()),
+            Some(free) => Err(Error::Limit {
+                what: format!("FLIP of {width} x {height} pixels"),
+                needed: format!("{} of memory", bytes_in_words(needed)),
+                device: "this machine".into(),
+                limit: format!("{}, what is free now", bytes_in_words(free)),
+                advice: "compare smaller pictures, or a part of them".into(),
+            }),
+        }
+    }
+
     /// FLIP of a picture and its reference; at one exposure in stops, if it is given.
     pub fn new(image: &Picture, reference: &Picture, exposure: Option<f32>) -> Self {
         let (width, height) = (image.width as usize, image.height as usize);

@@ -9,7 +9,7 @@ use crate::shared::outputs::Outputs;
 use crate::shared::printing::{self, print, warn};
 use crate::shared::values::{limit, stops};
 use luminaire::files;
-use luminaire::picture::{self, Picture};
+use luminaire::picture::{self, Picture, free_memory};
 use luminaire::{Error, Result};
 use luminaire_measure::heat_map::{RELATIVE_ERRORS, heat_map};
 use luminaire_measure::metrics::{self, Comparison, NonFinite};
@@ -82,7 +82,16 @@ pub fn run(options: &Options) -> Result<ExitCode> {
         picture.warnings.iter().for_each(|warning| warn(format!("{}: {warning}", path.display())));
     }
     let comparison = metrics::compare(&image, &reference, options.worst as usize)?;
-    let flip = (comparison.pixels > 0).then(|| Flip::new(&image, &reference, options.exposure));
+    let flip = match Flip::fits((image.width, image.height), free_memory()) {
+        _ if comparison.pixels == 0 => None,
+        Ok(()) => Some(Flip::new(&image, &reference, options.exposure)),
+        // A limit that is asked for is not left out.
+        Err(error) if options.max_flip.is_some() => return Err(error),
+        Err(error) => {
+            warn(format_args!("{error}; it is left out"));
+            None
+        }
+    };
     let failures = failures(options, &comparison, flip.as_ref());
     warn_of_pitfalls(options, &image, &reference, &comparison);
 

@@ -4,15 +4,16 @@ mod integrator;
 mod tables;
 
 use self::tables::{luminaires, materials, meshes, objects, point, rgb, textures};
+use crate::shared::counts::pixels;
 use crate::shared::film_size::FilmSize;
 use crate::shared::printing::print;
 use crate::shared::table::table;
-use luminaire::Result;
 use luminaire::film::Demand;
 use luminaire::glam::DVec3;
 use luminaire::gpu::specialization::KernelModel;
 use luminaire::reference::lost_light::lost_light;
 use luminaire::scene::{self, Environment, FilmSettings, Mesh, Projection, Scene};
+use luminaire::{Error, Result};
 use std::collections::HashSet;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -40,10 +41,10 @@ pub struct Options {
     /// A scene file (.toml) or any OBJ file.
     scene: PathBuf,
     /// Width in pixels of the picture whose memory is told [default: the scene's, or from --height at the scene's aspect ratio].
-    #[arg(long, value_name = "PIXELS", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=i64::from(LARGEST_SIDE)))]
+    #[arg(long, value_name = "PIXELS", allow_negative_numbers = true, value_parser = pixels::<1, LARGEST_SIDE>)]
     width: Option<u32>,
     /// Height in pixels [default: the scene's, or from --width at the scene's aspect ratio].
-    #[arg(long, value_name = "PIXELS", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=i64::from(LARGEST_SIDE)))]
+    #[arg(long, value_name = "PIXELS", allow_negative_numbers = true, value_parser = pixels::<1, LARGEST_SIDE>)]
     height: Option<u32>,
 }
 
@@ -55,6 +56,11 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     let lost = lost_light(&scene);
     scene.warnings.extend(lost);
     FilmSize { width: options.width, height: options.height, largest: LARGEST_SIDE }.apply(&mut scene.film);
+    let FilmSettings { width, height, .. } = scene.film;
+    // What no memory of this machine holds is told, and what nothing can hold is refused as `render` does.
+    if let Err(error @ Error::Usage(_)) = (Demand { width, height, ..Demand::default() }).check() {
+        return Err(error);
+    }
     print(&describe(&scene))?;
     Ok(ExitCode::SUCCESS)
 }

@@ -92,10 +92,12 @@ pub fn lock(options: &Options, notes: Notes) -> Result<Vec<Lock>> {
 pub fn check(options: &Options) -> Result<()> {
     let Some(path) = &options.checkpoint else { return Ok(()) };
     if exists(path)? && !options.resume {
-        return Err(Error::Usage(format!(
-            "--checkpoint {}: there is a file already: go on from it with --resume, or remove it to start anew",
-            path.display()
-        )));
+        let advice = if part::is_part(path) {
+            "there is a checkpoint already: go on from it with --resume, or give another name, or remove it to start anew"
+        } else {
+            "there is a file already, which is no checkpoint: give another name"
+        };
+        return Err(Error::Usage(format!("--checkpoint {}: {advice}", path.display())));
     }
     Ok(())
 }

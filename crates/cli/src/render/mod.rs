@@ -87,6 +87,7 @@ fn change(scene: &mut Scene, options: &Options) -> Result<()> {
     scene.settings.exposure = options.exposure.unwrap_or(scene.settings.exposure);
     let FilmSettings { width, height, .. } = scene.film;
     outputs::demand(options, &scene.film).check()?;
+    outputs::check_error_map(options, limits(options, scene).spp, " (the scene says `spp = 1`)")?;
     match options.pixel {
         Some(Pixel { x, y }) if x >= width || y >= height => {
             Err(Error::Usage(format!("--pixel {x},{y} is not on the film, which has {width} x {height} pixels")))

@@ -29,8 +29,19 @@ Examples:
 pub const LARGEST_SIDE: u32 = 65536;
 
 /// Options that mean nothing where nothing is rendered.
-const REPLAY_CONFLICTS: [&str; 9] =
-    ["output", "error_map", "aov", "stats", "spp", "time", "noise", "samples", "checkpoint"];
+const REPLAY_CONFLICTS: [&str; 11] = [
+    "output",
+    "error_map",
+    "aov",
+    "stats",
+    "spp",
+    "time",
+    "noise",
+    "samples",
+    "checkpoint",
+    "checkpoint_every",
+    "resume",
+];
 
 /// What to render, and how.
 #[derive(Debug, clap::Args)]

@@ -4,6 +4,7 @@ use super::options::Options;
 use super::outcome::Outcome;
 use super::stats::Stats;
 use crate::shared::outputs::Outputs;
+use crate::shared::printing::warn;
 use luminaire::film::Demand;
 use luminaire::part::Provenance;
 use luminaire::scene::FilmSettings;
@@ -54,11 +55,7 @@ pub fn declare_others(options: &Options, outputs: &mut Outputs) -> Result<()> {
         outputs.add("--denoised", path)?;
     }
     if let Some(path) = &options.error_map {
-        if options.spp == Some(1) {
-            return Err(Error::Usage(
-                "--error-map wants at least --spp 2: one sample tells nothing of its error".into(),
-            ));
-        }
+        check_error_map(options, options.spp, "")?;
         if picture::Format::of(path)? != picture::Format::Png {
             return Err(Error::Usage(format!("--error-map {}: the name must end in .png", path.display())));
         }
@@ -69,6 +66,21 @@ pub fn declare_others(options: &Options, outputs: &mut Outputs) -> Result<()> {
             return Err(Error::Usage(format!("--stats {}: the name must end in .json", path.display())));
         }
         outputs.add("--stats", path)?;
+    }
+    Ok(())
+}
+
+/// Refuses `--error-map` where all that is rendered is one sample a pixel: `spp`, which is from `whence`, or that of `--samples`.
+pub fn check_error_map(options: &Options, spp: Option<u32>, whence: &str) -> Result<()> {
+    if options.error_map.is_none() {
+        return Ok(());
+    }
+    let why = "one sample tells nothing of its error";
+    if options.samples.as_ref().is_some_and(|samples| samples.len() == 1) {
+        return Err(Error::Usage(format!("--error-map wants at least two samples in --samples A..B: {why}")));
+    }
+    if options.samples.is_none() && spp == Some(1) {
+        return Err(Error::Usage(format!("--error-map wants at least --spp 2{whence}: {why}")));
     }
     Ok(())
 }
@@ -90,6 +102,16 @@ pub fn demand(options: &Options, film: &FilmSettings) -> Demand {
 pub fn write(outcome: &mut Outcome, pictures: &[PathBuf]) -> Result<()> {
     let start = Instant::now();
     write_pictures(outcome, pictures)?;
+    if let Some(path) = &outcome.options.error_map
+        && outcome.rendered.film.most_samples() < 2
+    {
+        let missing =
+            format!("{}: not written: no pixel has two samples, and one tells nothing of its error", path.display());
+        if !outcome.options.quiet {
+            warn(&missing);
+        }
+        outcome.warnings.push(missing);
+    }
     outcome.seconds.write = start.elapsed().as_secs_f64();
     if let Some(path) = &outcome.options.stats {
         let stats = Stats::new(outcome, pictures);

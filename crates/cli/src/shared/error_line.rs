@@ -28,7 +28,7 @@ pub fn error_line(film: &Film, error: Option<ErrorEstimate>, lacks_light: bool) 
     if film.least_samples() < PARTS {
         text += &format!("; uncertain, from {} samples a pixel", film.least_samples());
     }
-    if let Some(share) = film.black_share().filter(|share| *share >= MOSTLY_BLACK) {
+    if let Some(share) = film.black_share().filter(|share| *share >= MOSTLY_BLACK && film.least_samples() > 0) {
         text += &format!("; {} of the pixels are black", share_in_words(share));
     }
     if lacks_light {
@@ -39,7 +39,9 @@ pub fn error_line(film: &Film, error: Option<ErrorEstimate>, lacks_light: bool) 
 
 /// Why there is no estimate.
 fn no_estimate(film: &Film) -> String {
+    let missing = film.samples.iter().filter(|samples| **samples == 0).count();
     let why = match film.black_share() {
+        Some(_) if missing > 0 => format!("{missing} of {} pixels have no sample", film.samples.len()),
         None => "no sample is finite".into(),
         Some(1.0) => format!("the picture is black, {} found no light", samples(film)),
         _ if film.most_samples() < 2 => "one sample a pixel tells nothing of it".into(),
@@ -63,7 +65,8 @@ fn share_in_words(share: f64) -> String {
 
 /// A warning of a picture that is black, or nearly so; none if it is not. `dark` is that an earlier warning says why.
 pub fn black_picture(film: &Film, dark: bool) -> Option<String> {
-    let share = film.black_share().filter(|share| *share >= MOSTLY_BLACK)?;
+    // What the first pass has not come to may hold the light.
+    let share = film.black_share().filter(|share| *share >= MOSTLY_BLACK && film.least_samples() > 0)?;
     let advice = if dark {
         "an earlier warning says why"
     } else {
@@ -139,6 +142,11 @@ mod tests {
         assert!(black_picture(&film(16, 0, 1.0), true).unwrap().contains("an earlier warning"));
         assert!(black_picture(&lamp, false).unwrap().contains("97.5 % of the pixels"));
         assert_eq!(black_picture(&film(16, 3, 1.0), false), None);
+
+        let mut begun = film(4, 0, 1.0);
+        begun.samples[3..].fill(0);
+        assert!(says(&begun).contains("37 of 40 pixels have no sample"), "{}", says(&begun));
+        assert_eq!(black_picture(&begun, false), None);
     }
 
     #[test]

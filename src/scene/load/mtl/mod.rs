@@ -8,7 +8,7 @@ mod named_files;
 pub(super) use named_files::named_files;
 
 use super::material_draft::{DEFAULT_ETA, Draft, ETAS, LARGEST_EXPONENT, MapDraft};
-use super::text_file::{Tally, read_text, shortened};
+use super::text_file::{Tally, logical_lines, read_text, shortened};
 use crate::Result;
 use glam::Vec3;
 use std::collections::HashMap;
@@ -42,9 +42,9 @@ pub(super) fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Vec<Draft>
         unknown: Tally::default(),
         unknown_keyword: String::new(),
     };
-    for (line, number) in text.lines().zip(1..) {
+    for (number, line) in logical_lines(&text) {
         reader.line = number;
-        reader.statement(line.trim());
+        reader.statement(&line);
     }
     reader.close();
     reader.orphans.warn(path, "a statement before the first newmtl is ignored", reader.warnings);

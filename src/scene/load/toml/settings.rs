@@ -128,6 +128,9 @@ impl File<'_> {
         }
         let image = match image {
             None => None,
+            Some(name) if name.get_ref().trim().is_empty() => {
+                return Err(self.error(name.span(), "`image` names no file: name a picture, or leave it out"));
+            }
             Some(name) => {
                 let path = self.beside(name.get_ref());
                 let read = environment::read(&path, warnings);
