@@ -3,12 +3,18 @@
 use super::*;
 use crate::common::scenes::*;
 use glam::{Affine3A, Vec3};
-use luminaire::film::{AovSum, Tile};
+use luminaire::film::{AovSum, Aovs, Tile};
 use luminaire::picture::Values;
 use luminaire::reference::Reference;
-use luminaire::render::{Tracer, aovs};
+use luminaire::render::{self, Tracer};
 use luminaire::scene::Material;
 use luminaire::scene::build::{add, empty, lamp, matte, quad};
+
+/// The layers of a whole film.
+fn aovs(tracer: &mut dyn Tracer, size: (u32, u32), samples: u32) -> luminaire::Result<Aovs> {
+    let never = std::sync::atomic::AtomicBool::new(false);
+    Ok(render::aovs(tracer, size, samples, &never)?.expect("nobody stopped it"))
+}
 
 /// A wall three units away that covers the left half of the picture: depth along the line of sight, its normal, its albedo.
 #[test]
