@@ -40,7 +40,7 @@ fn a_lamp_shows_in_a_large_ceiling() {
     for half in [3.0, 100.0, 800.0] {
         let scene = in_a_large_ceiling(half);
         on_every_backend(|backend| {
-            let found = total(&render(&mut backend.tracer(&scene), 16, 16, 16, 1));
+            let found = total(&render(&mut backend.tracer(&scene), 16, 16, 16, 16));
             assert!((found.mean - 1.0).abs() < 1e-6, "{half}, {}: {} instead of 1", backend.name(), found.mean);
         });
     }
