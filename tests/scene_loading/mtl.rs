@@ -348,6 +348,11 @@ fn a_library_of_nearly_this_name_is_found() {
 }
 
 #[test]
+fn a_library_without_a_name() {
+    warned(&obj(format!("mtllib\n{TRIANGLE}")).load("mesh.obj"), &["mesh.obj:1: mtllib names no file"]);
+}
+
+#[test]
 fn a_library_that_is_missing_is_said_once_for_a_mesh() {
     let objects = "[[object]]\nmesh = \"mesh.obj\"\n[[object]]\nmesh = \"./mesh.obj\"\nsmooth = 30\n";
     let text = format!("{SENSOR}{LIGHT}{objects}");

@@ -284,9 +284,7 @@ fn argument(word: &str, words: &[String], program: &clap::Command) -> Option<Str
             dashes == 1 && command.get_arguments().any(|arg| arg.get_short().map(String::from).as_deref() == Some(name))
         };
         let owner = program.get_subcommands().find(|command| has(command, &plain) || short(command))?.get_name();
-        Some(format!(
-            "{word} is an option of `luminaire {owner}`; `luminaire {here} --help` lists those that there are here"
-        ))
+        Some(format!("{word} is an option of `luminaire {owner}`; `luminaire {here} --help` lists its own"))
     })
 }
 

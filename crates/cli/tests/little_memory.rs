@@ -84,3 +84,17 @@ fn memory_is_told_before_a_render_begins() {
         assert!(said.contains(part), "{part} is not in\n{said}");
     }
 }
+
+#[test]
+fn flip_is_left_out_where_it_does_not_fit() {
+    let folder = Folder::new();
+    let head = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2048 +X 2048\n";
+    let picture = [&head[..], &[128, 64, 32, 129].repeat(2048 * 2048)].concat();
+    std::fs::write(folder.path().join("a.hdr"), picture).unwrap();
+    let plain = within(&folder, 600, "compare a.hdr a.hdr");
+    let (said, found) = (stderr(&plain), String::from_utf8_lossy(&plain.stdout));
+    assert!(plain.status.success() && found.contains("RMSE        0") && !found.contains("FLIP"), "{said}{found}");
+    assert!(said.contains("warning: FLIP of 2048 x 2048 pixels needs 0.6 GiB") && said.contains("left out"), "{said}");
+    let limited = within(&folder, 600, "compare a.hdr a.hdr --max-flip 0.1");
+    assert!(limited.status.code() == Some(1) && stderr(&limited).contains("error: FLIP of"), "{}", stderr(&limited));
+}

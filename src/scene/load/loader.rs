@@ -265,6 +265,9 @@ impl Loader {
         named: &mut HashMap<String, u32>,
     ) {
         let folder = obj.parent().unwrap_or(Path::new(""));
+        if names.is_empty() && first {
+            self.warnings.push(format!("{}:{line}: mtllib names no file; ignored", obj.display()));
+        }
         for (library, guess) in named_file::libraries(folder, names) {
             let mut said = guess.into_iter().collect::<Vec<_>>();
             match self.library(&library) {

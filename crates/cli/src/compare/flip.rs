@@ -19,7 +19,7 @@ pub struct Flip {
 }
 
 /// Bytes of memory that FLIP takes a pixel at most, beside the two pictures. Measured.
-const MEMORY: u64 = 180;
+const MEMORY: u64 = 150;
 
 impl Flip {
     /// Refuses pictures for which the memory that is free is not enough.
