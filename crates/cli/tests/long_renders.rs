@@ -387,6 +387,13 @@ fn a_checkpoint_that_cannot_be_written_does_not_end_a_render() {
     panic!("no render is long enough to lose its folder");
 }
 
+/// Renders the Cornell box on the reference, larger than the other tests do.
+fn large(folder: &Folder, options: &str) -> Running {
+    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/cornell/cornell.toml");
+    let mut command = folder.luminaire(&["render", scene, "--backend", "cpu"]);
+    Running::start(command.args(options.split_whitespace()))
+}
+
 /// Sends SIGTERM to a program so often. The shell's own `kill`: a bare system has no other.
 fn terminate(program: &Running, times: usize) {
     let line = vec![format!("kill -s TERM {}", program.id()); times].join("; ");
@@ -398,10 +405,8 @@ fn an_interrupt_while_the_checkpoint_is_saved_ends_the_render_afterwards() {
     for times in [1, 2, 3] {
         let folder = Folder::new();
         // Hardly anything but saving.
-        let program = Running::start(
-            &mut folder
-                .render("--width 256 --height 256 --time 600 -o a.exr --checkpoint c.exr --checkpoint-every 0.000001"),
-        );
+        let options = "--width 256 --height 256 --time 600 -o a.exr --checkpoint c.exr --checkpoint-every 0.000001";
+        let program = large(&folder, options);
         folder.wait_for("c.exr", &program);
         terminate(&program, times);
         let output = program.output();
@@ -418,9 +423,8 @@ fn an_interrupt_while_the_checkpoint_is_saved_ends_the_render_afterwards() {
 #[test]
 fn an_interrupt_while_layers_are_made_costs_only_the_layers() {
     let folder = Folder::new();
-    let program = Running::start(
-        &mut folder.render("--width 640 --height 480 --spp 1 --aov -o a.exr --checkpoint c.exr --checkpoint-every 600"),
-    );
+    let program =
+        large(&folder, "--width 640 --height 480 --spp 1 --aov -o a.exr --checkpoint c.exr --checkpoint-every 600");
     folder.wait_for("c.exr", &program);
     terminate(&program, 1);
     let output = program.output();

@@ -40,14 +40,14 @@ pub fn finish(mut outcome: Outcome, pictures: &[PathBuf], notes: Notes) -> Resul
     if done.is_err() && kept {
         notes.note(&format!("the samples are in the checkpoint; {again} writes the pictures again"));
     }
-    let mut failures = [done.err(), saved.and_then(Result::err)].into_iter().flatten();
-    if let (End::Failed(lost), Some(failure)) = (&outcome.rendered.end, failures.next()) {
+    let failures: Vec<_> = [done.err(), saved.and_then(Result::err)].into_iter().flatten().collect();
+    if let (End::Failed(lost), false) = (&outcome.rendered.end, failures.is_empty()) {
         // Neither may hide the other.
         printing::error(lost);
-        std::iter::once(failure).chain(failures).for_each(printing::error);
+        failures.iter().for_each(printing::error);
         return Ok(ExitCode::from(DEVICE_FAILED));
     }
-    if let Some(failure) = failures.next() {
+    if let Some(failure) = failures.into_iter().next() {
         return Err(failure);
     }
     if !notes.quiet {
