@@ -43,6 +43,11 @@ pub fn files() -> Vec<(&'static str, String, &'static str)> {
             format!("{SQUARE}{DOWN}v -1 2.000001 -1\nv 1 2 -1.000001\nv 1 1.999999 1\nv -1 2 1\n{DOWN}"),
             "",
         ),
+        (
+            "as far above as shadow rays round",
+            format!("{SQUARE}{DOWN}v -1 2.000005 -1\nv 1 2.000005 -1\nv 1 2.000005 1\nv -1 2.000005 1\n{DOWN}"),
+            "",
+        ),
         ("cut finer", format!("{SQUARE}{DOWN}{}", board(4)), ""),
         ("cut finer first", format!("{SQUARE}{}v -1 2 -1\nv 1 2 -1\nv 1 2 1\nv -1 2 1\n{DOWN}", board(3)), ""),
         (

@@ -5,9 +5,9 @@ use crate::scene::{Mesh, Triangle};
 use glam::{DAffine3, DVec3, Vec3A};
 use obvhs::aabb::Aabb;
 
-/// What is nearer than this, for each unit of the coordinates, is in the same place: single precision knows numbers to 6e-8, and a point that
-/// a ray finds to about ten times that.
-const SAME_PLACE: f64 = 1e-6;
+/// What is nearer than this, for each unit of the coordinates, is in the same place: single precision knows numbers to 6e-8, a point that a ray
+/// finds to about ten times that, and shadow rays start and end by as much before what they are about (up to 3.5e-6 of lamps behind lamps leaked).
+const SAME_PLACE: f64 = 5e-6;
 /// But never more than this part of the smaller triangle, so that what is tiny keeps its shape.
 const LEAST_SHAPE: f64 = 1e-4;
 /// How far a triangle is moved off another one, for each unit of its coordinates and its size, unless that is too little or too much.
