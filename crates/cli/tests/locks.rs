@@ -97,8 +97,16 @@ fn a_link_has_the_lock_of_what_it_leads_to() {
     std::fs::create_dir(folder.path().join("far")).unwrap();
     symlink("far/real.exr", folder.path().join("c.exr")).unwrap();
     // At first the link leads nowhere, and then to what was saved.
+    let lock = folder.path().join("far/real.exr.lock");
     for _ in 0..2 {
+        let _ = std::fs::remove_file(&lock);
         let mut first = endless(&folder, &["--time", "600"]);
+        // The second time the checkpoint is there before the job has its lock.
+        let start = std::time::Instant::now();
+        while std::fs::read(&lock).is_ok_and(|text| text.is_empty()) || !lock.exists() {
+            assert!(start.elapsed().as_secs() < 60, "no lock");
+            std::thread::sleep(std::time::Duration::from_millis(10));
+        }
         assert!(folder.path().join("c.exr").is_symlink() && folder.path().join("far/real.exr").is_file());
         let words = ["render", "good.obj", "--backend", "cpu", "--width", "16", "--quiet", "--spp", "4", "-o", "b.exr"];
         for name in ["c.exr", "far/real.exr"] {
