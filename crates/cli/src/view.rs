@@ -4,11 +4,11 @@ use crate::shared::backend_name::{self, BackendName};
 use crate::shared::counts::{pixels, samples, seed};
 use crate::shared::estimator::EstimatorOptions;
 use crate::shared::film_size::FilmSize;
+use crate::shared::foreseen::warn_of_the_picture;
 use crate::shared::printing::warn;
 use crate::shared::values::stops;
 use luminaire::Result;
 use luminaire::film::Film;
-use luminaire::reference::lost_light::lost_light;
 use luminaire::scene;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -83,10 +83,7 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     options.estimator.apply(&mut scene)?;
     scene.settings.seed = options.seed.unwrap_or(scene.settings.seed);
     scene.settings.exposure = options.exposure.unwrap_or(scene.settings.exposure);
-    let blurred = scene.blurred_because();
-    scene.warnings.extend(blurred);
-    let lost = lost_light(&scene);
-    scene.warnings.extend(lost);
+    warn_of_the_picture(&mut scene);
     scene.warnings.iter().for_each(warn);
     luminaire_view::run(luminaire_view::Options { scene, request, spp: options.spp.unwrap_or(u32::MAX) })?;
     Ok(ExitCode::SUCCESS)

@@ -46,3 +46,18 @@ fn a_pipe_as_a_material_library() {
     let output = folder.luminaire(&["inspect", "pipe.obj"]).output().unwrap();
     assert!(output.status.success() && String::from_utf8_lossy(&output.stdout).contains("not a regular file"));
 }
+
+/// What single precision can draw depends on the size that was asked for, not on the scene's.
+#[test]
+fn a_picture_is_judged_by_the_size_that_is_asked_for() {
+    let folder = Folder::new();
+    folder.write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    let sensor = "[sensor]\nkind = \"orthographic\"\nposition = [0.5, 0.5, 5]\ntarget = [0.5, 0.5, 0]\nheight = 0.05\n";
+    let objects = "[[object]]\nmesh = \"t.obj\"\n[[object]]\nmesh = \"t.obj\"\ntranslate = [100, 0, 0]\n";
+    folder.write("s.toml", &format!("{sensor}[environment]\nradiance = [1, 1, 1]\n{objects}"));
+    for (height, blurred) in [("16", false), ("60000", true)] {
+        let output = folder.luminaire(&["inspect", "s.toml", "--width", "16", "--height", height]).output().unwrap();
+        let said = String::from_utf8_lossy(&output.stdout);
+        assert_eq!(said.contains("single precision"), blurred, "{height}: {said}");
+    }
+}

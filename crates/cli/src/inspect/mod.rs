@@ -6,12 +6,12 @@ mod tables;
 use self::tables::{luminaires, materials, meshes, objects, point, rgb, textures};
 use crate::shared::counts::pixels;
 use crate::shared::film_size::FilmSize;
+use crate::shared::foreseen::warn_of_the_picture;
 use crate::shared::printing::print;
 use crate::shared::table::table;
 use luminaire::film::Demand;
 use luminaire::glam::DVec3;
 use luminaire::gpu::specialization::KernelModel;
-use luminaire::reference::lost_light::lost_light;
 use luminaire::scene::{self, Environment, FilmSettings, Mesh, Projection, Scene};
 use luminaire::{Error, Result};
 use std::collections::HashSet;
@@ -51,16 +51,13 @@ pub struct Options {
 /// Loads a scene and prints what is in it.
 pub fn run(options: &Options) -> Result<ExitCode> {
     let mut scene = scene::load(&options.scene)?;
-    let blurred = scene.blurred_because();
-    scene.warnings.extend(blurred);
-    let lost = lost_light(&scene);
-    scene.warnings.extend(lost);
     FilmSize { width: options.width, height: options.height, largest: LARGEST_SIDE }.apply(&mut scene.film);
     let FilmSettings { width, height, .. } = scene.film;
     // What no memory of this machine holds is told, and what nothing can hold is refused as `render` does.
     if let Err(error @ Error::Usage(_)) = (Demand { width, height, ..Demand::default() }).check() {
         return Err(error);
     }
+    warn_of_the_picture(&mut scene);
     print(&describe(&scene))?;
     Ok(ExitCode::SUCCESS)
 }

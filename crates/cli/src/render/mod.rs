@@ -24,12 +24,12 @@ use self::progress::Reporter;
 use self::seconds::Seconds;
 use crate::shared::backend_name;
 use crate::shared::film_size::FilmSize;
+use crate::shared::foreseen::warn_of_the_picture;
 use crate::shared::interrupts;
 use crate::shared::outputs::Outputs;
 use crate::shared::printing::Notes;
 use crate::shared::values::Pixel;
 use luminaire::backend::{self, Renderer, Request};
-use luminaire::reference::lost_light::lost_light;
 use luminaire::render::{End, Limits, Rendered, aovs, resume};
 use luminaire::scene::{self, FilmSettings, Scene};
 use luminaire::{Error, Result};
@@ -62,11 +62,7 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     seconds.load = start.elapsed().as_secs_f64();
     outputs.check(scene.files.iter().map(|path| ("a file of the scene", &**path)))?;
     change(&mut scene, options)?;
-    let blurred = scene.blurred_because();
-    scene.warnings.extend(blurred);
-    let lost = lost_light(&scene);
-    let lacks_light = !lost.is_empty();
-    scene.warnings.extend(lost);
+    let lacks_light = warn_of_the_picture(&mut scene);
     scene.warnings.iter().for_each(|warning| notes.warn(warning));
 
     let render = || trace(options, &scene, lacks_light, &request, seconds, &pictures, notes);

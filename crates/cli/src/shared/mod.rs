@@ -6,6 +6,7 @@ pub mod error_line;
 pub mod estimator;
 pub mod exit_codes;
 pub mod film_size;
+pub mod foreseen;
 pub mod interrupts;
 pub mod outputs;
 pub mod printing;
