@@ -81,19 +81,24 @@ impl Default for Material {
 }
 
 impl Material {
+    /// Whether light goes through the surface, beside what its opacity lets pass.
+    pub fn transmits(&self) -> bool {
+        self.transmission != Vec3::ZERO && self.eta.is_some()
+    }
+
     /// Whether anything is mirrored or refracted.
     pub fn has_impulse(&self) -> bool {
-        self.reflection != Vec3::ZERO || (self.transmission != Vec3::ZERO && self.eta.is_some())
+        self.reflection != Vec3::ZERO || self.transmits()
     }
 
     /// Whether light that passes is bent, so that the surface has to be that of a closed body.
     pub fn bends(&self) -> bool {
-        self.transmission != Vec3::ZERO && self.eta.is_some_and(|eta| eta != 1.0) && !self.thin
+        self.transmits() && self.eta != Some(1.0) && !self.thin
     }
 
     /// Whether the surface is a sheet that lets light through: [`Material::thin`] says nothing of what transmits nothing.
     pub fn is_sheet(&self) -> bool {
-        self.thin && self.transmission != Vec3::ZERO && self.eta.is_some()
+        self.thin && self.transmits()
     }
 
     /// Whether what is diffuse and glossy lies under a smooth dielectric: then it gets, and gives away, what Fresnel does not reflect. A

@@ -49,6 +49,17 @@ pub struct Object {
     pub material: Option<u32>,
 }
 
+/// The box around a box, given by its least and greatest corner, that is mapped.
+pub(crate) fn moved_box([low, high]: [DVec3; 2], map: &DAffine3) -> [DVec3; 2] {
+    let mut moved = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+    for corner in 0..8 {
+        let pick = |axis: usize| if corner >> axis & 1 == 0 { low[axis] } else { high[axis] };
+        let p = map.transform_point3(DVec3::new(pick(0), pick(1), pick(2)));
+        moved = [moved[0].min(p), moved[1].max(p)];
+    }
+    moved
+}
+
 /// A vector along the outward normal, in object space: where the winding is counter-clockwise, unless the vertex normals know better.
 /// One answer for a whole triangle, so that light is inside behind all of it or behind none.
 pub(crate) fn outward(mesh: &Mesh, triangle: &Triangle) -> DVec3 {

@@ -34,7 +34,7 @@ pub use luminaire::Luminaire;
 pub use luminaire_table::{EmissiveTriangle, LuminaireTable, SampledLuminaire};
 pub use material::{Maps, Material};
 pub use mesh::{Mesh, Object, Triangle};
-pub(crate) use mesh::{outward, widen};
+pub(crate) use mesh::{moved_box, outward, widen};
 pub use sensor::{Lens, Projection, Sensor};
 pub use settings::{FilmSettings, RenderSettings};
 pub use texture::Texture;

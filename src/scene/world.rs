@@ -1,10 +1,10 @@
 //! `Scene`: the scene as a whole.
 
-use super::widen;
 use super::{
     Environment, FilmSettings, Integrator, Luminaire, Material, Mesh, Object, RenderSettings, Sensor, Texture, Triangle,
 };
-use glam::{DVec3, Vec3};
+use super::{moved_box, widen};
+use glam::DVec3;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -77,13 +77,8 @@ impl Scene {
         for object in &self.objects {
             let to_world = widen(object.object_to_world);
             let (a, b) = boxes[object.mesh as usize];
-            for corner in 0..8 {
-                let pick = |bit: u32, axis: usize| if corner >> bit & 1 == 0 { a[axis] } else { b[axis] };
-                let p = Vec3::new(pick(0, 0), pick(1, 1), pick(2, 2));
-                let p = to_world.transform_point3(p.as_dvec3());
-                low = low.min(p);
-                high = high.max(p);
-            }
+            let moved = moved_box([a, b].map(|corner| corner.as_dvec3()), &to_world);
+            (low, high) = (low.min(moved[0]), high.max(moved[1]));
         }
         (low, high)
     }

@@ -3,7 +3,7 @@
 //! Ordinary scenes are not touched: moving begins where coordinates are [`FAR`] times as large as what they describe, which costs single precision
 //! more than four of its twenty-four bits.
 
-use crate::scene::{Mesh, Object};
+use crate::scene::{Mesh, Object, moved_box};
 use glam::{DAffine3, DVec3, Vec3};
 use std::sync::Arc;
 
@@ -75,17 +75,6 @@ pub(super) fn settle(
     }
     warn_of_blur(objects, &boxes, origin, warnings);
     origin
-}
-
-/// A box around a box that is mapped.
-fn moved_box([low, high]: [DVec3; 2], map: &DAffine3) -> [DVec3; 2] {
-    let mut moved = [DVec3::INFINITY, DVec3::NEG_INFINITY];
-    for corner in 0..8 {
-        let pick = |axis: usize| if corner >> axis & 1 == 0 { low[axis] } else { high[axis] };
-        let p = map.transform_point3(DVec3::new(pick(0), pick(1), pick(2)));
-        moved = [moved[0].min(p), moved[1].max(p)];
-    }
-    moved
 }
 
 /// Gives a mesh another origin. Triangles that single precision flattens there are dropped.

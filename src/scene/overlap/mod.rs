@@ -6,13 +6,15 @@
 
 mod edits;
 mod face;
+mod report;
 mod union;
 
 use self::edits::Edits;
 use self::face::{Face, Relation};
+use self::report::{Found, Report};
 use self::union::{MOST_UNITED, union};
 use super::rounding::across;
-use super::{Maps, Material, Scene, widen};
+use super::{Maps, Material, Scene, moved_box, widen};
 use glam::{DVec3, Vec3};
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
@@ -31,31 +33,6 @@ const MOST_OVERLAPS: usize = 20_000;
 const MOST_IN_GROUP: usize = 1 << 22;
 /// Triangles of meshes that are made anew: as many as the scene has, or if it has few, so many.
 const MOST_COPIED: usize = 1 << 18;
-
-/// Something that was found, how often, and where first.
-#[derive(Debug, Default)]
-struct Found {
-    count: usize,
-    first: String,
-}
-
-/// What was found, each a warning.
-#[derive(Debug, Default)]
-struct Report {
-    same: Found,
-    veils: Found,
-    united: Found,
-    back_to_back: Found,
-    other_light: Found,
-    apart: Found,
-    hidden: Found,
-    unresolved: Found,
-    in_plane: Found,
-    undecided: Found,
-    glowing: Found,
-    stuck: Found,
-    unsearched: bool,
-}
 
 /// The triangles that are compared, and what becomes of them.
 struct Merger<'a> {
@@ -198,7 +175,7 @@ impl Merger<'_> {
 
     /// Whether light goes through a lamp, beside what its opacity lets pass: its faces have to stay where they are.
     fn transmits(&self, face: usize) -> bool {
-        transmits(self.material(face))
+        self.material(face).transmits()
     }
 
     /// How far a triangle has to be moved off one in whose plane it lies, so that rays tell them apart: the bounds on the rounding of both.
@@ -506,13 +483,8 @@ impl Merger<'_> {
             let to_world = widen(object.object_to_world);
             if scene.objects.len() > 1 {
                 let (low, high) = mesh.bounds();
-                let corners: Vec<_> = (0..8)
-                    .map(|k| {
-                        let pick = |axis: usize| f64::from(if k >> axis & 1 == 0 { low[axis] } else { high[axis] });
-                        to_world.transform_point3(DVec3::new(pick(0), pick(1), pick(2))).as_vec3a()
-                    })
-                    .collect();
-                if !Aabb::from_points(&corners).intersect_aabb(&bounds) {
+                let moved = moved_box([low, high].map(|corner| corner.as_dvec3()), &to_world);
+                if !Aabb::from_points(&moved.map(|corner| corner.as_vec3a())).intersect_aabb(&bounds) {
                     continue;
                 }
             }
@@ -561,7 +533,7 @@ impl Merger<'_> {
             // Nobody sees it.
             return;
         }
-        if transmits(&self.scene.materials[face.material as usize]) {
+        if self.scene.materials[face.material as usize].transmits() {
             // One side of a body of glass has to stay where it is, and light goes on through it.
             self.note(|report| &mut report.undecided, 1, face, "");
         } else if self.transmits(lamp) {
@@ -589,69 +561,6 @@ impl Merger<'_> {
             self.note(|report| &mut report.hidden, 1, face, "");
         }
     }
-}
-
-impl Report {
-    /// A warning for each kind of thing that was found.
-    fn sentences(&self, path: &str) -> Vec<String> {
-        let kinds = [
-            (&self.same, "that emit lie on others of the same light: they are dropped, and the light is counted once"),
-            (&self.united, "that emit cover each other in a plane: they are cut anew so that each place emits once"),
-            (
-                &self.back_to_back,
-                "of one-sided lamps lie back to back with others of the same light: they are dropped, and the others shine both ways",
-            ),
-            (
-                &self.apart,
-                "lie back to back with one-sided lamps: both are moved apart by a hair, so that each side shows its own",
-            ),
-            (
-                &self.other_light,
-                "that emit lie on others of another light, of which only one can be seen: the first counts, and they are dropped",
-            ),
-            (&self.hidden, "that do not emit lie exactly on lamps: they are dropped, and the lamps show"),
-            (
-                &self.veils,
-                "that are partly transparent lie on others of the same material: they are dropped, so that the opacity counts once",
-            ),
-            (
-                &self.unresolved,
-                "that emit lie in the plane of other lamps and cover a part of them: where they overlap, the light is counted twice; cut or move them",
-            ),
-            (
-                &self.in_plane,
-                "that do not emit lie in the plane of lamps and cover a part of them: the lamps are moved off that plane by a hair, so that they show",
-            ),
-            (
-                &self.undecided,
-                "that transmit light lie in the plane of lamps: which of the two is met first is left to rounding; move one of them",
-            ),
-            (
-                &self.glowing,
-                "that emit and let light through lie in the plane of other triangles, and are left as they are: which of the two is met first is left to rounding; move one of them",
-            ),
-            (
-                &self.stuck,
-                "that emit lie in the plane of others that are so large, or so far from the origin, that to move them by what single precision tells apart there would show: which of the two is met first is left to rounding; cut or move them",
-            ),
-        ];
-        let mut sentences: Vec<String> = kinds
-            .iter()
-            .filter(|(found, _)| found.count > 0)
-            .map(|(Found { count, first }, what)| format!("{path}: {count} triangle(s) {what} ({first})"))
-            .collect();
-        if self.unsearched {
-            sentences.push(format!(
-                "{path}: too many lamps lie close together to compare all of them; light may be counted twice where they overlap"
-            ));
-        }
-        sentences
-    }
-}
-
-/// Whether light goes through a surface, beside what its opacity lets pass.
-fn transmits(material: &Material) -> bool {
-    material.transmission != Vec3::ZERO && material.eta.is_some()
 }
 
 fn build(boxes: &[Aabb]) -> Bvh2 {

@@ -1,0 +1,85 @@
+//! What was found of lamps that lie on each other, as warnings.
+
+/// Something that was found, how often, and where first.
+#[derive(Debug, Default)]
+pub(super) struct Found {
+    pub count: usize,
+    pub first: String,
+}
+
+/// What was found, each a warning.
+#[derive(Debug, Default)]
+pub(super) struct Report {
+    pub same: Found,
+    pub veils: Found,
+    pub united: Found,
+    pub back_to_back: Found,
+    pub other_light: Found,
+    pub apart: Found,
+    pub hidden: Found,
+    pub unresolved: Found,
+    pub in_plane: Found,
+    pub undecided: Found,
+    pub glowing: Found,
+    pub stuck: Found,
+    /// Not all triangles were compared: there are too many in one place.
+    pub unsearched: bool,
+}
+
+impl Report {
+    /// A warning for each kind of thing that was found.
+    pub(super) fn sentences(&self, path: &str) -> Vec<String> {
+        let kinds = [
+            (&self.same, "that emit lie on others of the same light: they are dropped, and the light is counted once"),
+            (&self.united, "that emit cover each other in a plane: they are cut anew so that each place emits once"),
+            (
+                &self.back_to_back,
+                "of one-sided lamps lie back to back with others of the same light: they are dropped, and the others shine both ways",
+            ),
+            (
+                &self.apart,
+                "lie back to back with one-sided lamps: both are moved apart by a hair, so that each side shows its own",
+            ),
+            (
+                &self.other_light,
+                "that emit lie on others of another light, of which only one can be seen: the first counts, and they are dropped",
+            ),
+            (&self.hidden, "that do not emit lie exactly on lamps: they are dropped, and the lamps show"),
+            (
+                &self.veils,
+                "that are partly transparent lie on others of the same material: they are dropped, so that the opacity counts once",
+            ),
+            (
+                &self.unresolved,
+                "that emit lie in the plane of other lamps and cover a part of them: where they overlap, the light is counted twice; cut or move them",
+            ),
+            (
+                &self.in_plane,
+                "that do not emit lie in the plane of lamps and cover a part of them: the lamps are moved off that plane by a hair, so that they show",
+            ),
+            (
+                &self.undecided,
+                "that transmit light lie in the plane of lamps: which of the two is met first is left to rounding; move one of them",
+            ),
+            (
+                &self.glowing,
+                "that emit and let light through lie in the plane of other triangles, and are left as they are: which of the two is met first is left to rounding; move one of them",
+            ),
+            (
+                &self.stuck,
+                "that emit lie in the plane of others that are so large, or so far from the origin, that to move them by what single precision tells apart there would show: which of the two is met first is left to rounding; cut or move them",
+            ),
+        ];
+        let mut sentences: Vec<String> = kinds
+            .iter()
+            .filter(|(found, _)| found.count > 0)
+            .map(|(Found { count, first }, what)| format!("{path}: {count} triangle(s) {what} ({first})"))
+            .collect();
+        if self.unsearched {
+            sentences.push(format!(
+                "{path}: too many lamps lie close together to compare all of them; light may be counted twice where they overlap"
+            ));
+        }
+        sentences
+    }
+}
