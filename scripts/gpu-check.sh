@@ -4,7 +4,9 @@
 #   scripts/gpu-check.sh pack       here: builds, and puts all that is needed into target/gpu-check/
 #   target/gpu-check/run.sh [OUT]   there: devices, the kernel's tests, a render, the table of accuracy, the benchmark; writes into OUT
 #
-# The tests run on whatever the GPU offers: where it has no ray query, they say so and test the compute BVH.
+# The tests run on whatever the GPU offers: where it has no ray query, they say so and test the compute BVH. A bare machine may lack the Vulkan loader
+# and what NVIDIA's driver loads beside it: Debian's libvulkan1 libegl1 libglvnd0 libopengl0 libgl1 libglx0 libgles2 are enough
+# (`dpkg -x FILE.deb /`, then `ldconfig`); VK_DRIVER_FILES names the driver's nvidia_icd.json where it lies in no usual folder.
 set -euo pipefail
 
 pack() {
@@ -30,6 +32,8 @@ check() {
     out=$(mkdir -p "${1:-out}" && cd "${1:-out}" && pwd)
     cd "$(dirname "$0")"
     ./luminaire devices | tee "$out/devices.txt"
+    # Nobody wants an hour of a lent GPU to go to its processor.
+    grep -q ' GPU$' "$out/devices.txt" || { echo "gpu-check: no GPU among these devices" >&2; exit 1; }
     # Sharp where it can be: a failed test ends the run, after its report.
     ./gpu-tests --nocapture 2>&1 | tee "$out/tests.txt" | grep -E '^(test |SKIP|test result)'
     ./luminaire render scenes/cornell/cornell.toml -o "$out/cornell.png" --spp 1024 --stats "$out/cornell.json"

@@ -21,13 +21,28 @@ pub fn pixels(tracer: &mut dyn Tracer, scene: &Scene, samples: u32) -> Vec<DVec3
     means
 }
 
-/// How many pixels of two pictures differ by more than `tolerance` of the brighter one (or of a hundredth of the mean).
+/// How many pixels of two pictures differ by more than `tolerance` of the brighter one (or of a hundredth of the mean). Prints by how much: rounding
+/// that a device does more of shows as many small differences, a choice that falls otherwise as few large ones.
 pub fn differing(a: &[DVec3], b: &[DVec3], tolerance: f64) -> usize {
     let floor = a.iter().map(|p| p.element_sum() / 3.0).sum::<f64>() / a.len() as f64 * 0.01;
-    a.iter()
-        .zip(b)
-        .filter(|(a, b)| (**a - **b).abs().cmpgt(a.max(**b).max(DVec3::splat(floor)) * tolerance).any())
-        .count()
+    let relative = |(a, b): (&DVec3, &DVec3)| {
+        let off = (*a - *b) / a.max(*b).max(DVec3::splat(floor));
+        [off.x, off.y, off.z].into_iter().max_by(|x, y| x.abs().total_cmp(&y.abs())).expect("three channels")
+    };
+    let mut off: Vec<(usize, f64)> = a.iter().zip(b).map(relative).enumerate().collect();
+    off.retain(|(_, off)| off.abs() > tolerance);
+    off.sort_by(|x, y| y.1.abs().total_cmp(&x.1.abs()));
+    if let (Some((worst, largest)), Some((_, middle))) = (off.first(), off.get(off.len() / 2)) {
+        let brighter = off.iter().filter(|(_, off)| *off > 0.0).count();
+        println!(
+            "    {} pixels are off, {brighter} of them brighter, by {:.1e} in the middle; pixel {worst} by {largest:.1e}: {} for {}",
+            off.len(),
+            middle.abs(),
+            a[*worst],
+            b[*worst]
+        );
+    }
+    off.len()
 }
 
 pub fn mean(pixels: &[DVec3]) -> DVec3 {
