@@ -1,7 +1,7 @@
 //! A triangle in world space, and how two of them lie.
 
 use crate::scene::outward;
-use crate::scene::{Mesh, Triangle};
+use crate::scene::{Mesh, Scene, Triangle};
 use glam::{DAffine3, DVec3, Vec3A};
 use obvhs::aabb::Aabb;
 
@@ -81,6 +81,19 @@ impl Face {
         self.corners.iter().sum::<DVec3>() / 3.0
     }
 
+    /// Object, material and place, for people.
+    pub(super) fn describe(&self, scene: &Scene) -> String {
+        let object = &scene.objects[self.object as usize].name;
+        let material = &scene.materials[self.material as usize].name;
+        let DVec3 { x, y, z } = self.centre() + scene.origin;
+        format!("object `{object}`, material `{material}`, at ({x:.6} {y:.6} {z:.6})")
+    }
+
+    /// How far it is usually moved off another triangle, where what is moved is no triangle but a whole body.
+    pub(super) fn usual_lift(&self) -> f64 {
+        USUAL_LIFT * self.reach.max(self.size)
+    }
+
     /// How far it is moved off another triangle that it lies on, if that takes at least `needed`: further than rays usually round by, but so
     /// little that nobody sees it. None if there is no such distance.
     pub(super) fn lift(&self, needed: f64) -> Option<f64> {
@@ -88,7 +101,7 @@ impl Face {
         // The side of the square of which it would be half.
         let side = (b - a).cross(c - a).length().sqrt();
         let most = MOST_LIFT * side;
-        (needed <= most).then(|| needed.max(USUAL_LIFT * self.reach.max(self.size)).min(most))
+        (needed <= most).then(|| needed.max(self.usual_lift()).min(most))
     }
 
     /// How far another one may lie off its plane, and still be taken to lie in it.

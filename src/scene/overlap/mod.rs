@@ -4,29 +4,27 @@
 //! Light sampling finds each of two lamps in one place, and a ray only one of them; so their light would be counted twice by one way of finding
 //! it and once by the other. What is meant is one lamp, and one is left.
 
+mod doubled;
 mod edits;
 mod face;
+mod glass;
+mod pull;
 mod report;
+mod search;
 mod union;
 
 use self::edits::Edits;
 use self::face::{Face, Relation};
 use self::report::{Found, Report};
-use self::union::{MOST_UNITED, union};
+use self::search::{Near, select};
+use self::union::{MOST_UNITED, Part, union};
 use super::rounding::across;
-use super::{Maps, Material, Scene, moved_box, widen};
+use super::{Maps, Material, Scene};
 use glam::{DVec3, Vec3};
-use obvhs::aabb::Aabb;
-use obvhs::bvh2::Bvh2;
-use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 use std::collections::{BTreeMap, HashMap};
 
 /// Partly transparent triangles are compared in scenes of at most so many: instanced trees have more leaves than memory has room for.
 const MOST_LEAVES: usize = 1 << 22;
-/// Pairs of triangles that are compared, for each triangle: neighbours have about a dozen.
-const PAIRS: usize = 64;
-/// Other triangles that are compared with the lamps.
-const MOST_OTHERS: usize = 50_000_000;
 /// A group with more pairs that overlap is left as it is, but for eight for each triangle: it is no lamp but a tangle.
 const MOST_OVERLAPS: usize = 20_000;
 /// Pairs of triangles of one group that are compared.
@@ -53,6 +51,10 @@ struct Merger<'a> {
     parent: Vec<usize>,
     /// By face: with how many later ones of its light it overlaps.
     overlaps: Vec<u32>,
+    /// By face: earlier ones of another light, which cover a part of it.
+    covered_by: BTreeMap<usize, Vec<usize>>,
+    /// Triangles that do not emit, and lamps in their plane from which they cannot be told apart: these are cut out of them.
+    cut_out: Vec<(Face, Vec<usize>)>,
     report: Report,
 }
 
@@ -77,12 +79,15 @@ impl Scene {
             variant_of: BTreeMap::new(),
             parent: (0..count).collect(),
             overlaps: vec![0; count],
+            covered_by: BTreeMap::new(),
+            cut_out: Vec::new(),
             report: Report::default(),
         };
         merger.exactly_equal();
         let mut edits = Edits::default();
         merger.compare(&mut edits);
         merger.unite(&mut edits);
+        merger.cut_out(&mut edits);
         merger.edit(&mut edits);
         let Merger { report, variants, .. } = merger;
         let path = self.path.display().to_string();
@@ -105,11 +110,11 @@ impl Scene {
 /// All triangles that emit or are partly transparent.
 fn faces(scene: &Scene) -> Vec<Face> {
     let emits = |m: &Material| m.emission != Vec3::ZERO;
-    let leaves = |m: &Material| m.has_holes() && !emits(m);
-    let mut faces = select(scene, emits, usize::MAX);
+    let leaves = |m: &Material| (m.has_holes() || m.is_sheet()) && !emits(m);
+    let mut faces = select(scene, emits, usize::MAX).unwrap_or_default();
     if scene.materials.iter().any(leaves) {
         let count = faces.len();
-        faces.extend(select(scene, leaves, MOST_LEAVES));
+        faces.extend(select(scene, leaves, MOST_LEAVES).unwrap_or_default());
         if faces.len() > count {
             faces.sort_by_key(|face| (face.object, face.triangle));
         }
@@ -117,39 +122,10 @@ fn faces(scene: &Scene) -> Vec<Face> {
     faces
 }
 
-/// The triangles whose material is of a kind; none if there are more than `most`.
-fn select(scene: &Scene, kind: impl Fn(&Material) -> bool, most: usize) -> Vec<Face> {
-    let chosen: Vec<bool> = scene.materials.iter().map(kind).collect();
-    let mut faces = Vec::new();
-    if !chosen.contains(&true) {
-        return faces;
-    }
-    // Instances of a mesh choose the same triangles.
-    let mut of_mesh: Vec<Option<Vec<u32>>> = vec![None; scene.meshes.len()];
-    for (index, object) in (0..).zip(&scene.objects) {
-        let mesh = &scene.meshes[object.mesh as usize];
-        let to_world = widen(object.object_to_world);
-        let mut face = |triangle: u32| {
-            let material = object.material.unwrap_or(mesh.triangles[triangle as usize].material);
-            faces.push(Face::new(index, triangle, mesh, &to_world, material));
-        };
-        match object.material {
-            Some(material) if chosen[material as usize] => (0..mesh.triangles.len() as u32).for_each(&mut face),
-            Some(_) => {}
-            None => of_mesh[object.mesh as usize]
-                .get_or_insert_with(|| {
-                    let all = (0..).zip(&mesh.triangles);
-                    all.filter(|(_, t)| chosen[t.material as usize]).map(|(index, _)| index).collect()
-                })
-                .iter()
-                .copied()
-                .for_each(&mut face),
-        }
-        if faces.len() > most {
-            return Vec::new();
-        }
-    }
-    faces
+/// How far a triangle has to be off one in whose plane it lies, so that rays tell them apart: the bounds on the rounding of both.
+fn needed(scene: &Scene, moved: &Face, other: &Face) -> f64 {
+    let rounding = |face: &Face| across(scene, face.object, face.triangle, face.corners).0;
+    rounding(moved) + rounding(other) + moved.tolerance(other)
 }
 
 impl Merger<'_> {
@@ -178,11 +154,9 @@ impl Merger<'_> {
         self.material(face).transmits()
     }
 
-    /// How far a triangle has to be moved off one in whose plane it lies, so that rays tell them apart: the bounds on the rounding of both.
-    /// None if it would be seen to have moved.
+    /// How far a triangle has to be moved off one in whose plane it lies. None if it would be seen to have moved.
     fn gap(&self, moved: &Face, other: &Face) -> Option<f64> {
-        let rounding = |face: &Face| across(self.scene, face.object, face.triangle, face.corners).0;
-        moved.lift(rounding(moved) + rounding(other) + moved.tolerance(other))
+        moved.lift(needed(self.scene, moved, other))
     }
 
     /// Moves a lamp at least so far.
@@ -211,20 +185,9 @@ impl Merger<'_> {
         }
     }
 
-    /// Object, material and place of a face, for people.
-    fn place_of(&self, face: &Face) -> String {
-        let object = &self.scene.objects[face.object as usize].name;
-        let material = &self.scene.materials[face.material as usize].name;
-        let DVec3 { x, y, z } = face.centre() + self.scene.origin;
-        format!("object `{object}`, material `{material}`, at ({x:.6} {y:.6} {z:.6})")
-    }
-
     /// Counts `count` more of a kind, of which `face` is one.
     fn note(&mut self, kind: impl Fn(&mut Report) -> &mut Found, count: usize, face: &Face, more: &str) {
-        if kind(&mut self.report).count == 0 {
-            kind(&mut self.report).first = self.place_of(face) + more;
-        }
-        kind(&mut self.report).count += count;
+        kind(&mut self.report).add(count, || face.describe(self.scene) + more);
     }
 
     /// Triangles whose corners are the same to the last bit: found by hashing, so that any number in one place takes no longer.
@@ -271,7 +234,6 @@ impl Merger<'_> {
             return;
         }
         if !one && (self.transmits(first) || self.transmits(other)) {
-            self.leave(|report| &mut report.glowing, other);
             return;
         }
         let back_to_back = opposite && self.one_sided(first) && self.one_sided(other);
@@ -294,28 +256,18 @@ impl Merger<'_> {
     /// Compares what is left: first with each other, then the rest of the scene with the lamps.
     fn compare(&mut self, edits: &mut Edits) {
         let left: Vec<usize> = (0..self.faces.len()).filter(|index| !self.dropped[*index]).collect();
-        let boxes: Vec<Aabb> = left.iter().map(|index| self.faces[*index].bounds()).collect();
-        let bvh = build(&boxes);
-        let mut pairs = PAIRS * left.len() + 1_000_000;
-        for (place, &index) in left.iter().enumerate() {
-            let mut near: Vec<usize> = Vec::new();
-            visit(&bvh, boxes[place], |other| {
-                near.extend((left[other] > index).then_some(left[other]));
-                pairs = pairs.saturating_sub(1);
-                pairs > 0
-            });
-            for other in near {
-                if !self.dropped[index] && !self.dropped[other] {
-                    match self.faces[index].relation(&self.faces[other]) {
-                        Relation::Apart => {}
-                        Relation::Same => self.equal(index, other),
-                        Relation::Overlapping => self.overlapping(index, other),
-                    }
+        let near = Near::new(&self.faces, left);
+        let searched = near.each_pair(|index, other| {
+            if !self.dropped[index] && !self.dropped[other] {
+                match self.faces[index].relation(&self.faces[other]) {
+                    Relation::Apart => {}
+                    Relation::Same => self.equal(index, other),
+                    Relation::Overlapping => self.overlapping(index, other),
                 }
             }
-        }
-        self.report.unsearched = pairs == 0;
-        self.compare_with_the_rest(&bvh, &left, edits);
+        });
+        self.report.unsearched = !searched;
+        self.compare_with_the_rest(&near, edits);
     }
 
     /// What becomes of two faces that overlap in a plane.
@@ -324,7 +276,7 @@ impl Merger<'_> {
             return;
         }
         if self.transmits(a) || self.transmits(b) {
-            self.leave(|report| &mut report.glowing, if self.transmits(b) { b } else { a });
+            // Glass gives way later.
             return;
         }
         let opposite = self.faces[a].normal.dot(self.faces[b].normal) < 0.0;
@@ -334,17 +286,19 @@ impl Merger<'_> {
             self.overlaps[a] += 1;
             let (a, b) = (self.root(a), self.root(b));
             self.parent[a.max(b)] = a.min(b);
-        } else {
+        } else if self.material(a).has_holes() {
+            // What is behind it shows through.
             let face = self.faces[b].clone();
             self.note(|report| &mut report.unresolved, 1, &face, "");
+        } else {
+            self.covered_by.entry(b).or_default().push(a);
         }
     }
 
     /// Whether any other triangles of the plane could stand for it: it has no maps, and is flat.
-    fn is_plain(&self, face: usize) -> bool {
-        let of = &self.faces[face];
+    fn is_plain(&self, of: &Face) -> bool {
         let mesh = &self.scene.meshes[self.scene.objects[of.object as usize].mesh as usize];
-        let material = self.material(face);
+        let material = &self.scene.materials[of.material as usize];
         let dark = material.lambert == Vec3::ZERO && material.glossy == Vec3::ZERO && !material.has_impulse();
         let flat = mesh.normals.is_empty() || dark || {
             let normals = mesh.triangles[of.triangle as usize].vertices.map(|v| mesh.normals[v as usize]);
@@ -362,27 +316,42 @@ impl Merger<'_> {
         face
     }
 
-    /// Of faces of one light that overlap, leaves those that cover the whole by themselves, or puts in their place what they cover together.
+    /// Of faces of one light that overlap, leaves those that cover the whole by themselves, or puts in their place what they cover together, without what
+    /// earlier ones of another light cover.
     fn unite(&mut self, edits: &mut Edits) {
         let mut groups: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for index in (0..self.faces.len()).filter(|index| !self.dropped[*index]).collect::<Vec<_>>() {
             groups.entry(self.root(index)).or_default().push(index);
         }
-        for group in groups.into_values().filter(|group| group.len() > 1) {
-            let faces: Vec<&Face> = group.iter().map(|index| &self.faces[*index]).collect();
+        for group in groups.into_values() {
+            let none = Vec::new();
+            let above = |index: &usize| self.covered_by.get(index).unwrap_or(&none);
+            let cuts: usize = group.iter().map(|index| above(index).len()).sum();
+            if group.len() == 1 && cuts == 0 {
+                continue;
+            }
+            let part = |index: &usize| Part {
+                face: &self.faces[*index],
+                without: above(index).iter().map(|index| &self.faces[*index]).collect(),
+            };
             // The work of uniting grows with the crossings.
             let overlaps: usize = group.iter().map(|index| self.overlaps[*index] as usize).sum();
-            let few = group.len() <= MOST_UNITED && overlaps <= MOST_OVERLAPS + 8 * group.len();
-            let united = if few { union(&faces) } else { None };
-            let other = faces[faces.len() - 1].clone();
-            if let Some(kept) = united.as_ref().and_then(|united| self.cover(&group, united)) {
+            let few = group.len() <= MOST_UNITED && overlaps + cuts <= MOST_OVERLAPS + 8 * group.len();
+            let united = if few { union(&group.iter().map(part).collect::<Vec<_>>()) } else { None };
+            let other = self.faces[group[group.len() - 1]].clone();
+            if cuts > 0 && united.as_ref().is_some_and(Vec::is_empty) {
+                group.iter().for_each(|index| self.dropped[*index] = true);
+                self.note(|report| &mut report.other_light, group.len(), &other, "");
+                continue;
+            }
+            if let Some(kept) = united.as_ref().filter(|_| cuts == 0).and_then(|united| self.cover(&group, united)) {
                 let lift = self.highest(&group);
                 kept.iter().filter(|_| lift > 0.0).for_each(|index| self.raise(*index, lift));
                 group.iter().filter(|index| !kept.contains(index)).for_each(|index| self.dropped[*index] = true);
                 self.note(|report| &mut report.same, group.len() - kept.len(), &other, "");
                 continue;
             }
-            let plain = group.iter().all(|index| self.is_plain(*index) && !self.both_ways[*index]);
+            let plain = group.iter().all(|index| self.is_plain(&self.faces[*index]) && !self.both_ways[*index]);
             let Some(united) = united.filter(|_| plain) else {
                 self.note(|report| &mut report.unresolved, group.len(), &other, "");
                 continue;
@@ -397,7 +366,23 @@ impl Merger<'_> {
                 }
             }
             group.iter().for_each(|index| self.dropped[*index] = true);
-            self.note(|report| &mut report.united, group.len(), &other, "");
+            self.note(|report| if cuts > 0 { &mut report.cut } else { &mut report.united }, group.len(), &other, "");
+        }
+    }
+
+    /// Cuts lamps out of triangles that do not emit, where they cannot be moved off their plane.
+    fn cut_out(&mut self, edits: &mut Edits) {
+        for (face, lamps) in std::mem::take(&mut self.cut_out) {
+            let without = lamps.iter().map(|lamp| &self.faces[*lamp]).collect();
+            let few = self.is_plain(&face) && lamps.len() <= MOST_OVERLAPS;
+            let left = if few { union(&[Part { face: &face, without }]) } else { None };
+            let Some(left) = left else {
+                lamps.iter().for_each(|lamp| self.leave(|report| &mut report.stuck, *lamp));
+                continue;
+            };
+            edits.remove(face.object, face.triangle);
+            left.iter().for_each(|corners| edits.add(face.object, *corners, face.material, 0.0));
+            self.note(|report| &mut report.cut_out, 1, &face, "");
         }
     }
 
@@ -465,56 +450,19 @@ impl Merger<'_> {
     }
 
     /// Triangles that do not emit, against the lamps.
-    fn compare_with_the_rest(&mut self, bvh: &Bvh2, left: &[usize], edits: &mut Edits) {
-        let lamps: Vec<usize> = left.iter().copied().filter(|index| self.emits(*index)).collect();
-        if lamps.is_empty() {
-            return;
-        }
-        let bounds = lamps.iter().map(|index| self.faces[*index].bounds()).reduce(|a, b| a.union(&b));
-        let Some(bounds) = bounds else { return };
+    fn compare_with_the_rest(&mut self, near: &Near, edits: &mut Edits) {
         let scene = self.scene;
         let dark: Vec<bool> = scene.materials.iter().map(|m| m.emission == Vec3::ZERO).collect();
-        let (mut budget, mut pairs) = (MOST_OTHERS, MOST_OTHERS);
-        for (object_index, object) in (0..).zip(&scene.objects) {
-            let mesh = &scene.meshes[object.mesh as usize];
-            if object.material.is_some_and(|material| !dark[material as usize]) {
-                continue;
-            }
-            let to_world = widen(object.object_to_world);
-            if scene.objects.len() > 1 {
-                let (low, high) = mesh.bounds();
-                let moved = moved_box([low, high].map(|corner| corner.as_dvec3()), &to_world);
-                if !Aabb::from_points(&moved.map(|corner| corner.as_vec3a())).intersect_aabb(&bounds) {
-                    continue;
-                }
-            }
-            for (triangle_index, triangle) in (0..).zip(&mesh.triangles) {
-                let material = object.material.unwrap_or(triangle.material);
-                budget = budget.saturating_sub(1);
-                if budget == 0 || !dark[material as usize] {
-                    continue;
-                }
-                let corners = triangle
-                    .vertices
-                    .map(|v| to_world.transform_point3(mesh.positions[v as usize].as_dvec3()).as_vec3a());
-                let around = Aabb::from_points(&corners);
-                if !around.intersect_aabb(&bounds) {
-                    continue;
-                }
-                let mut near = Vec::new();
-                visit(bvh, around, |place| {
-                    near.push(left[place]);
-                    pairs = pairs.saturating_sub(1);
-                    pairs > 0
-                });
-                if near.is_empty() {
-                    continue;
-                }
-                let face = Face::new(object_index, triangle_index, mesh, &to_world, material);
+        let lamps: Vec<bool> = (0..self.faces.len()).map(|index| self.emits(index)).collect();
+        let searched = near.each_other(
+            scene,
+            &dark,
+            |index| lamps[index],
+            |face, near| {
                 let relation = |lamp: &usize| (*lamp, self.faces[*lamp].relation(&face));
                 let found: Vec<_> = near
                     .iter()
-                    .filter(|index| self.emits(**index) && !self.dropped[**index])
+                    .filter(|index| !self.dropped[**index])
                     .map(relation)
                     .filter(|(_, relation)| *relation != Relation::Apart)
                     .collect();
@@ -522,9 +470,9 @@ impl Merger<'_> {
                     Some((lamp, relation)) => self.on_a_lamp(*lamp, &face, *relation, edits),
                     None => found.iter().for_each(|(lamp, relation)| self.on_a_lamp(*lamp, &face, *relation, edits)),
                 }
-            }
-        }
-        self.report.unsearched |= budget == 0 || pairs == 0;
+            },
+        );
+        self.report.unsearched |= !searched;
     }
 
     /// What becomes of a triangle that does not emit and lies on a lamp.
@@ -533,12 +481,11 @@ impl Merger<'_> {
             // Nobody sees it.
             return;
         }
-        if self.scene.materials[face.material as usize].transmits() {
-            // One side of a body of glass has to stay where it is, and light goes on through it.
-            self.note(|report| &mut report.undecided, 1, face, "");
-        } else if self.transmits(lamp) {
-            self.leave(|report| &mut report.glowing, lamp);
-        } else if relation == Relation::Overlapping {
+        if self.scene.materials[face.material as usize].transmits() || self.transmits(lamp) {
+            // Glass gives way to what touches it, when the lamps are where they stay.
+            return;
+        }
+        if relation == Relation::Overlapping {
             // Two one-sided veils in the place of one would take away twice.
             if self.material(lamp).has_holes() && !self.one_sided(lamp) {
                 self.leave(|report| &mut report.glowing, lamp);
@@ -546,7 +493,12 @@ impl Merger<'_> {
                 self.raise(lamp, by);
                 self.note(|report| &mut report.in_plane, 1, face, "");
             } else {
-                self.leave(|report| &mut report.stuck, lamp);
+                match self.cut_out.last_mut() {
+                    Some((last, lamps)) if (last.object, last.triangle) == (face.object, face.triangle) => {
+                        lamps.push(lamp)
+                    }
+                    _ => self.cut_out.push((face.clone(), vec![lamp])),
+                }
             }
         } else if self.one_sided(lamp) && self.faces[lamp].normal.dot(face.normal) < 0.0 {
             // The back of a lamp: behind it.
@@ -561,19 +513,4 @@ impl Merger<'_> {
             self.note(|report| &mut report.hidden, 1, face, "");
         }
     }
-}
-
-fn build(boxes: &[Aabb]) -> Bvh2 {
-    let indices = (0..boxes.len() as u32).collect();
-    let mut builder = PlocBuilder::with_capacity(boxes.len());
-    builder.build(PlocSearchDistance::Minimum, boxes, indices, SortPrecision::U64, 0)
-}
-
-/// Calls `found` with the index of each box near to this one, until it returns false.
-fn visit(bvh: &Bvh2, around: Aabb, mut found: impl FnMut(usize) -> bool) {
-    bvh.aabb_traverse(around, |bvh, node| {
-        let node = &bvh.nodes[node as usize];
-        let first = node.first_index as usize;
-        bvh.primitive_indices[first..first + node.prim_count as usize].iter().all(|index| found(*index as usize))
-    });
 }
