@@ -1,7 +1,7 @@
 //! Scenes in which glass touches other surfaces exactly, or by a gap.
 
 use glam::{Affine3A, Vec3};
-use luminaire::scene::build::{add, cube, empty, icosphere, matte, mesh, pinhole, quad};
+use luminaire::scene::build::{add, add_instance, cube, empty, icosphere, lamp, matte, mesh, pinhole, quad};
 use luminaire::scene::{Environment, LightSampling, Material, Mesh, Scene, Triangle};
 use std::f32::consts::TAU;
 
@@ -205,11 +205,47 @@ pub fn scenes(albedo: f32, gap: f32) -> Vec<(&'static str, Scene)> {
                 add(scene, lathe(&water, 12), clear(1.33), turned);
             })
         }),
+        ("ice that is flush with water", {
+            scene(&|scene| {
+                let half = Affine3A::from_scale(Vec3::splat(0.5));
+                add(scene, cube(), clear(1.33), turned);
+                add(scene, cube(), clear(1.31 / 1.33), turned * moved(0.0, 0.5 - gap, 0.0) * half);
+            })
+        }),
+        ("a row on a floor", {
+            scene(&|scene| {
+                let third = Affine3A::from_scale(Vec3::splat(0.5));
+                let place = |k: f32| turned * moved(k * (1.0 + gap), gap - 0.5, 0.0) * third;
+                let mesh = add(scene, cube(), glass(), place(-1.0));
+                add_instance(scene, mesh, glass(), place(0.0));
+                add_instance(scene, mesh, glass(), place(1.0));
+                add(scene, floor(), white(), turned);
+            })
+        }),
+        ("a body that does not bend light, on a floor", {
+            scene(&|scene| {
+                add(scene, cube(), clear(1.0), moved(0.0, gap, 0.0));
+                add(scene, floor(), white(), Affine3A::IDENTITY);
+            })
+        }),
         ("water in glass, with a common face", {
             scene(&|scene| {
                 add(scene, icosphere(2), glass(), turned);
                 let inner = turned * Affine3A::from_scale(Vec3::splat(1.0 - gap));
                 add(scene, icosphere(2), clear(1.33 / 1.5), inner);
+            })
+        }),
+        ("a glowing cube on a floor", {
+            scene(&|scene| {
+                let glow = Material { emission: Vec3::splat(0.5), ..glass() };
+                add(scene, cube(), glow, moved(0.0, gap, 0.0));
+                add(scene, floor(), white(), Affine3A::IDENTITY);
+            })
+        }),
+        ("a glowing label", {
+            scene(&|scene| {
+                add(scene, label(0.6), lamp(Vec3::splat(2.0)), turned * moved(0.0, 0.0, gap));
+                add(scene, cube(), glass(), turned);
             })
         }),
     ]
@@ -224,6 +260,7 @@ fn standing_off(mut body: Mesh, gap: f32) -> Mesh {
 /// The same, where chance alone finds light: a path that loses nothing brings exactly 1 from white light.
 pub fn furnaces() -> Vec<(&'static str, Scene)> {
     let mut scenes = scenes(1.0, 0.0);
+    scenes.retain(|(name, _)| !name.contains("glowing"));
     for (_, scene) in &mut scenes {
         luminaire::scene::build::estimator(scene).light_sampling = LightSampling::None;
     }

@@ -89,19 +89,20 @@ impl Face {
         format!("object `{object}`, material `{material}`, at ({x:.6} {y:.6} {z:.6})")
     }
 
-    /// How far it is usually moved off another triangle, where what is moved is no triangle but a whole body.
+    /// How far it is usually moved off another triangle: further than rays usually round by, but so little that nobody sees it.
     pub(super) fn usual_lift(&self) -> f64 {
-        USUAL_LIFT * self.reach.max(self.size)
+        (USUAL_LIFT * self.reach.max(self.size)).min(self.most_lift())
     }
 
-    /// How far it is moved off another triangle that it lies on, if that takes at least `needed`: further than rays usually round by, but so
-    /// little that nobody sees it. None if there is no such distance.
-    pub(super) fn lift(&self, needed: f64) -> Option<f64> {
+    fn most_lift(&self) -> f64 {
         let [a, b, c] = self.corners;
         // The side of the square of which it would be half.
-        let side = (b - a).cross(c - a).length().sqrt();
-        let most = MOST_LIFT * side;
-        (needed <= most).then(|| needed.max(self.usual_lift()).min(most))
+        MOST_LIFT * (b - a).cross(c - a).length().sqrt()
+    }
+
+    /// How far it is moved off another triangle that it lies on, if that takes at least `needed`. None if that would be seen.
+    pub(super) fn lift(&self, needed: f64) -> Option<f64> {
+        (needed <= self.most_lift()).then(|| needed.max(self.usual_lift()))
     }
 
     /// How far another one may lie off its plane, and still be taken to lie in it.

@@ -11,7 +11,7 @@ use super::report::Found;
 use super::search::{Near, select};
 use super::{MOST_COPIED, needed};
 use crate::scene::{Material, Scene};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Glass of more triangles is not compared with anything.
 const MOST_GLASS: usize = 1 << 21;
@@ -36,6 +36,8 @@ struct Parter<'a> {
     depths: BTreeMap<usize, Depth>,
     /// By face of a pane: how far it moves, to its outward side, or to the other if that is negative.
     shifts: BTreeMap<usize, f64>,
+    /// Faces that stay where they are, of which there is a warning.
+    told: BTreeSet<usize>,
     report: Report,
 }
 
@@ -55,8 +57,14 @@ impl Scene {
             return Vec::new();
         }
         let near = Near::new(&faces, (0..faces.len()).collect());
-        let mut parter =
-            Parter { scene: self, faces, depths: BTreeMap::new(), shifts: BTreeMap::new(), report: Report::default() };
+        let mut parter = Parter {
+            scene: self,
+            faces,
+            depths: BTreeMap::new(),
+            shifts: BTreeMap::new(),
+            told: BTreeSet::new(),
+            report: Report::default(),
+        };
         let searched = parter.compare(&near);
         let mut edits = Edits::default();
         for (index, depth) in &parter.depths {
@@ -150,11 +158,18 @@ impl Parter<'_> {
         bodies && face.material == other.material && (face.object == other.object || self.same_way(a, b))
     }
 
+    /// Says of a face, once, that it is left as it is.
+    fn leave(&mut self, kind: impl Fn(&mut Report) -> &mut Found, index: usize) {
+        if self.told.insert(index) {
+            kind(&mut self.report).add(1, || self.faces[index].describe(self.scene));
+        }
+    }
+
     /// What becomes of a face that is there twice: nothing. Where one mesh has both, or both objects show one, the check of bodies says so.
     fn on_itself(&mut self, later: usize, earlier: usize) {
         let mesh = |index: usize| self.scene.objects[self.faces[index].object as usize].mesh;
         if mesh(later) != mesh(earlier) {
-            self.report.doubled.add(1, || self.faces[later].describe(self.scene));
+            self.leave(|report| &mut report.doubled, later);
         }
     }
 
@@ -176,7 +191,7 @@ impl Parter<'_> {
             (false, true) => self.draw_in(later, needed, None),
             (true, false) => self.draw_in(earlier, needed, None),
             (true, true) if face.material == other.material => {
-                self.report.panes_in_one_place.add(1, || face.describe(self.scene));
+                self.leave(|report| &mut report.panes_in_one_place, later);
             }
             (true, true) => self.move_pane(later, &other, needed),
             (false, false) => {
@@ -201,7 +216,7 @@ impl Parter<'_> {
     fn move_pane(&mut self, index: usize, other: &Face, needed: f64) {
         let face = &self.faces[index];
         let Some(by) = face.lift(needed) else {
-            self.report.stuck.add(1, || face.describe(self.scene));
+            self.leave(|report| &mut report.stuck, index);
             return;
         };
         let by = if face.normal.dot(other.normal) < 0.0 { -by } else { by };
