@@ -118,6 +118,12 @@ pub fn scenes(albedo: f32, gap: f32) -> Vec<(&'static str, Scene)> {
     };
     vec![
         ("a cube on a floor", standing(cube(), Affine3A::IDENTITY)),
+        ("far from the origin", {
+            let far = Vec3::new(300.0, 20.0, -200.0);
+            let mut scene = standing(cube(), Affine3A::from_translation(far));
+            scene.sensor = pinhole(far + Vec3::new(1.4, 1.5, 5.0), far, Vec3::Y, 40.0);
+            scene
+        }),
         ("a cube on a turned floor", standing(cube(), turned)),
         ("mirrored and stretched", standing(cube(), turned * Affine3A::from_scale(Vec3::new(-0.5, 1.0, 0.7)))),
         ("a finely cut cube on a floor", standing(fine_cube(6), Affine3A::IDENTITY)),

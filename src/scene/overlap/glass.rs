@@ -246,7 +246,7 @@ impl Report {
             ),
             (
                 &self.stuck,
-                "of glass lie in the plane of others that they touch, and are left as they are, since to move them by what single precision tells apart there would show: their bodies are too thin or cut too finely, or too far from the origin; which of the two is met first is left to rounding; leave a gap",
+                "of glass lie in the plane of others that they touch, and are left as they are, since to move them by what single precision tells apart there would show: their bodies are too thin, too far from the origin, or too small beside what they touch; which of the two is met first is left to rounding; leave a gap",
             ),
             (
                 &self.doubled,

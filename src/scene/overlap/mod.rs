@@ -1,5 +1,5 @@
 //! Lamps that lie on each other, and what else must not lie in one place twice: double-sided exports, an object listed twice, a quad cut along
-//! both diagonals.
+//! both diagonals; and glass that touches what it must be told from.
 //!
 //! Light sampling finds each of two lamps in one place, and a ray only one of them; so their light would be counted twice by one way of finding
 //! it and once by the other. What is meant is one lamp, and one is left.

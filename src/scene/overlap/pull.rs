@@ -9,6 +9,8 @@ use std::f64::consts::TAU;
 const MOST_STRETCHED: f64 = 16.0;
 /// How often the faces of a corner take turns to move it.
 const ROUNDS: usize = 64;
+/// And for each unit of the size of what moves together at most so far: what moves further is seen to have moved.
+const MOST_SEEN: f64 = 0.02;
 /// Faces that leave an edge in directions that differ by less, in radian, lie on each other.
 const SAME_ANGLE: f64 = 1e-4;
 
@@ -209,9 +211,20 @@ impl<'a> Around<'a> {
         for (number, by) in moves.iter().enumerate() {
             bad[number] |= *by != [DVec3::ZERO; 3] && !self.keeps_its_shape(number, by);
         }
+        let mut extents: HashMap<usize, (Vec3, Vec3)> = HashMap::new();
+        for number in 0..moves.len() {
+            let extent = extents.entry(root(&mut parents, number)).or_insert((Vec3::INFINITY, Vec3::NEG_INFINITY));
+            for p in [0, 1, 2].map(|k| self.corner(number, k)) {
+                *extent = (extent.0.min(p), extent.1.max(p));
+            }
+        }
         let mut bad_bodies = BTreeSet::new();
-        for number in (0..bad.len()).filter(|number| bad[*number]) {
-            bad_bodies.insert(root(&mut parents, number));
+        for (number, depth) in depths.iter().enumerate() {
+            let body = root(&mut parents, number);
+            let (low, high) = extents[&body];
+            if bad[number] || depth.is_some_and(|depth| depth > MOST_SEEN * f64::from(low.distance(high))) {
+                bad_bodies.insert(body);
+            }
         }
         let mut pulled = Pulled::default();
         for (number, by) in moves.into_iter().enumerate() {
