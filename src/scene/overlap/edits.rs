@@ -9,6 +9,9 @@ use std::sync::Arc;
 /// Instances share what is added to them where it differs by less, for each unit of its coordinates.
 const SAME_CORNER: f64 = 1e-6;
 
+/// Triangles of meshes that are made anew: as many as the scene has, or if it has few, so many.
+const MOST_COPIED: usize = 1 << 18;
+
 /// Changes to the triangles of objects, in world space.
 #[derive(Debug, Default)]
 pub(super) struct Edits {
@@ -128,10 +131,12 @@ impl Edits {
 }
 
 impl Plan {
-    /// How many triangles the meshes have that have to be made anew.
-    pub(super) fn copies(&self, scene: &Scene) -> usize {
+    /// How many triangles the meshes have that would have to be made anew, if they are too many.
+    pub(super) fn too_many(&self, scene: &Scene) -> Option<usize> {
         let mesh = |planned: &Planned| scene.objects[planned.objects[0] as usize].mesh as usize;
-        self.meshes.iter().map(|planned| scene.meshes[mesh(planned)].triangles.len()).sum()
+        let copies = self.meshes.iter().map(|planned| scene.meshes[mesh(planned)].triangles.len()).sum();
+        let own: usize = scene.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
+        (copies > own.max(MOST_COPIED)).then_some(copies)
     }
 
     /// Objects and triangles of faces of glass that stay where they are, since their bodies are too thin to be drawn in.

@@ -1,7 +1,7 @@
 //! A triangle in world space, and how two of them lie.
 
-use crate::scene::outward;
-use crate::scene::{Mesh, Scene, Triangle};
+use crate::scene::rounding::across;
+use crate::scene::{Mesh, Scene, Triangle, outward};
 use glam::{DAffine3, DVec3, Vec3A};
 use obvhs::aabb::Aabb;
 
@@ -89,6 +89,12 @@ impl Face {
         format!("object `{object}`, material `{material}`, at ({x:.6} {y:.6} {z:.6})")
     }
 
+    /// How far it has to be off another one in whose plane it lies, so that rays tell them apart: the bounds on the rounding of both.
+    pub(super) fn needed(&self, scene: &Scene, other: &Face) -> f64 {
+        let rounding = |face: &Face| across(scene, face.object, face.triangle, face.corners).0;
+        rounding(self) + rounding(other) + self.tolerance(other)
+    }
+
     /// How far it is usually moved off another triangle: further than rays usually round by, but so little that nobody sees it.
     pub(super) fn usual_lift(&self) -> f64 {
         (USUAL_LIFT * self.reach.max(self.size)).min(self.most_lift())
@@ -106,7 +112,7 @@ impl Face {
     }
 
     /// How far another one may lie off its plane, and still be taken to lie in it.
-    pub(super) fn tolerance(&self, other: &Face) -> f64 {
+    fn tolerance(&self, other: &Face) -> f64 {
         (SAME_PLACE * self.reach.max(other.reach)).min(LEAST_SHAPE * self.size.min(other.size))
     }
 

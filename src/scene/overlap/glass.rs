@@ -9,7 +9,6 @@ use super::face::{Face, Relation};
 use super::pull::Depth;
 use super::report::Found;
 use super::search::{Near, select};
-use super::{MOST_COPIED, needed};
 use crate::scene::{Material, Scene};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -43,7 +42,7 @@ struct Parter<'a> {
 
 impl Scene {
     /// Parts glass by a hair from what it touches, and says what it did, one sentence each: faces of closed bodies that lie in the plane of others are
-    /// drawn in, and thin panes moved off. [`load`](fn@super::load) has called this already, behind
+    /// drawn in, and thin panes moved off. [`load`](fn@crate::scene::load) has called this already, behind
     /// [`merge_overlapping_lamps`](Self::merge_overlapping_lamps).
     pub fn part_touching_glass(&mut self) -> Vec<String> {
         let path = self.path.display().to_string();
@@ -76,8 +75,7 @@ impl Scene {
             edits.shift(face.object, face.triangle, *by);
         }
         let plan = edits.plan(self);
-        let (copies, own) = (plan.copies(self), self.meshes.iter().map(|mesh| mesh.triangles.len()).sum::<usize>());
-        if copies > own.max(MOST_COPIED) {
+        if let Some(copies) = plan.too_many(self) {
             return vec![format!(
                 "{path}: glass touches other triangles, in instances that would each need a mesh of its own, of {copies} triangles together; all \
                  are left as they are: there, which of the two is met first is left to rounding; leave a gap"
@@ -175,7 +173,7 @@ impl Parter<'_> {
 
     /// What becomes of a face of glass that touches one that lets no light through.
     fn on_another(&mut self, index: usize, other: &Face) {
-        let needed = needed(self.scene, &self.faces[index], other);
+        let needed = self.faces[index].needed(self.scene, other);
         if self.material(&self.faces[index]).thin {
             self.move_pane(index, other, needed);
         } else {
@@ -186,7 +184,7 @@ impl Parter<'_> {
     /// What becomes of a face of glass that touches an earlier one of glass.
     fn on_glass(&mut self, later: usize, earlier: usize) {
         let (face, other) = (self.faces[later].clone(), self.faces[earlier].clone());
-        let needed = needed(self.scene, &face, &other);
+        let needed = face.needed(self.scene, &other);
         match (self.material(&face).thin, self.material(&other).thin) {
             (false, true) => self.draw_in(later, needed, None),
             (true, false) => self.draw_in(earlier, needed, None),
