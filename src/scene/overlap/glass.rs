@@ -95,7 +95,9 @@ impl Scene {
                  left to rounding"
             ));
         }
-        plan.apply(self);
+        if report.bodies.count + report.panes.count > 0 {
+            plan.apply(self);
+        }
         sentences
     }
 }
