@@ -96,6 +96,11 @@ impl Material {
         self.transmits() && self.eta != Some(1.0) && !self.thin
     }
 
+    /// Whether the surface is that of a body that light goes through, which its faces have to enclose.
+    pub fn is_body(&self) -> bool {
+        self.transmits() && !self.thin
+    }
+
     /// Whether the surface is a sheet that lets light through: [`Material::thin`] says nothing of what transmits nothing.
     pub fn is_sheet(&self) -> bool {
         self.thin && self.transmits()

@@ -80,6 +80,35 @@ pub fn files() -> Vec<(&'static str, String, &'static str)> {
             format!("{SQUARE}{DOWN}usemtl up\n{DOWN}"),
             "[[material]]\nname = \"up\"\nemission = [9, 9, 9]\n",
         ),
+        (
+            "another light in its place, other diagonal",
+            format!("{SQUARE}{DOWN}usemtl up\nf -3 -2 -1 -4\n"),
+            "[[material]]\nname = \"up\"\nemission = [9, 9, 9]\n",
+        ),
+        (
+            "another light that reaches beyond",
+            format!(
+                "usemtl lamp\nv -1 2 -1\nv 0.5 2 -1\nv 0.5 2 1\nv -1 2 1\n{DOWN}{}{DOWN}",
+                SQUARE.replace("lamp", "alike")
+            ),
+            "",
+        ),
+        (
+            "another light around it",
+            format!(
+                "usemtl lamp\nv -0.5 2 -0.5\nv 0.5 2 -0.25\nv 0.5 2 0.5\nv -0.5 2 0.5\n{DOWN}{}{DOWN}",
+                SQUARE.replace("lamp", "alike")
+            ),
+            "",
+        ),
+        (
+            "another light around it, of two halves",
+            format!(
+                "usemtl lamp\nv -0.5 2 -0.5\nv 0.5 2 -0.5\nv 0.5 2 0.5\nv -0.5 2 0.5\n{DOWN}usemtl alike\nv -1 2 -1\nv 0.25 2 -1\nv 0.25 2 1\nv -1 2 1\n\
+                 {DOWN}v 0 2 -1\nv 1 2 -1\nv 1 2 1\nv 0 2 1\n{DOWN}"
+            ),
+            "",
+        ),
         ("a black face in its place", format!("{}usemtl black\n{DOWN}usemtl lamp\n{DOWN}", SQUARE), ""),
         (
             "in the plane of a ceiling",
@@ -98,7 +127,10 @@ pub fn files() -> Vec<(&'static str, String, &'static str)> {
 pub fn scene(mesh: &str, more: &str) -> Scene {
     let folder = tempfile::tempdir().expect("a folder");
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).expect("a file");
-    write("m.mtl", "newmtl floor\nKd 0.5 0.5 0.5\nnewmtl black\nKd 0 0 0\nnewmtl lamp\nKd 0 0 0\nKe 2 2 2\n");
+    write(
+        "m.mtl",
+        "newmtl floor\nKd 0.5 0.5 0.5\nnewmtl black\nKd 0 0 0\nnewmtl lamp\nKd 0 0 0\nKe 2 2 2\nnewmtl alike\nKd 0 0 0\nKa 0.5 0.5 0.5\nKe 2 2 2\n",
+    );
     write("floor.obj", "mtllib m.mtl\nv -4 0 -4\nv 4 0 -4\nv 4 0 4\nv -4 0 4\nusemtl floor\nf 4 3 2 1\n");
     write("lamp.obj", &format!("mtllib m.mtl\n{mesh}"));
     let sensor =

@@ -6,5 +6,6 @@ pub mod directions;
 pub mod lamps;
 pub mod scenes;
 pub mod statistics;
+pub mod touching;
 
 pub use devices::{bench, skip};

@@ -12,6 +12,8 @@ fn one_lamp_is_counted_once() {
         ("double-sided", LightSampling::Mis),
         ("shifted halves", LightSampling::Direct),
         ("one-sided, another lamp at its back", LightSampling::Mis),
+        ("another light around it", LightSampling::Mis),
+        ("another light around it, of two halves", LightSampling::Direct),
         ("in the plane of a ceiling", LightSampling::Mis),
         ("in the plane of a ceiling", LightSampling::None),
     ];
@@ -34,10 +36,10 @@ fn one_lamp_is_counted_once() {
     }
 }
 
-/// The larger the ceiling, the further rays round by, and the further the lamp has to be off its plane.
+/// The larger the ceiling, the further rays round by, and the further the lamp has to be off its plane; out of one that is too large it is cut.
 #[test]
 fn a_lamp_shows_in_a_large_ceiling() {
-    for half in [3.0, 100.0, 800.0] {
+    for half in [3.0, 100.0, 800.0, 2000.0] {
         let scene = in_a_large_ceiling(half);
         on_every_backend(|backend| {
             let found = total(&render(&mut backend.tracer(&scene), 16, 16, 16, 16));

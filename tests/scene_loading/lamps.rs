@@ -34,6 +34,9 @@ fn the_warning_says_how_many_and_where() {
         ("placed twice", &["2 triangle(s)", "dropped"]),
         ("one-sided both ways", &["2 triangle(s)", "both ways"]),
         ("another light in its place", &["2 triangle(s)", "`up`", "`lamp` shows"]),
+        ("another light in its place, other diagonal", &["2 triangle(s)", "dropped", "the first counts", "`up`"]),
+        ("another light that reaches beyond", &["2 triangle(s)", "cut out", "`alike`"]),
+        ("another light around it", &["2 triangle(s)", "cut out", "`alike`"]),
         ("a black face in its place", &["2 triangle(s)", "do not emit", "`black`"]),
         ("in the plane of a ceiling", &["2 triangle(s)", "do not emit", "moved off"]),
     ] {
@@ -156,15 +159,15 @@ fn how_far_a_lamp_moves_goes_by_both_triangles_and_its_own_size() {
         let moved = 0.5 * front.distance(back);
         assert!((least..=0.01).contains(&moved), "{half}: {moved}");
     }
-    // In a ceiling that is too large for that it stays where it is, and so does a small one far from the origin.
-    let warnings = [files::in_a_large_ceiling(2000.0), {
+    // Out of a ceiling that is too large for that it is cut, and so is a small one far from the origin.
+    let scenes = [files::in_a_large_ceiling(2000.0), {
         let lamp = "v 5000 0 0.3\nv 5000.02 0 0.3\nv 5000.02 0 0.32\nv 5000 0 0.32\nf -4 -3 -2 -1\n";
         let ceiling = "v 4000 0 -500\nv 5400 0 -500\nv 5400 0 500\nv 4000 0 500\nv 0 -9 0\nf -5 -4 -3 -2\nf -5 -4 -1\n";
         let mesh = format!("mtllib mesh.mtl\nusemtl lamp\n{lamp}usemtl plate\n{ceiling}");
         obj(mesh).with("mesh.mtl", FIXTURE_MTL).load("mesh.obj")
     }];
-    for scene in warnings {
-        warned(&scene, &["2 triangle(s)", "so large, or so far", "left to rounding"]);
+    for scene in scenes {
+        warned(&scene, &["triangle(s)", "do not emit", "cut out of them"]);
         assert!(!scene.warnings.iter().any(|warning| warning.contains("moved off")), "{:?}", scene.warnings);
         assert_eq!(emissive(&scene).len(), 2);
     }
@@ -173,18 +176,19 @@ fn how_far_a_lamp_moves_goes_by_both_triangles_and_its_own_size() {
 const CUBE: &str = "mtllib mesh.mtl\nusemtl glass\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n\
                     f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 4 1 5 8\n";
 
-/// A body of glass that glows keeps its surface.
+/// A body of glass that glows keeps its surface, and is drawn in where it touches something.
 #[test]
-fn lamps_that_transmit_stay_where_they_are() {
+fn lamps_that_transmit_are_drawn_in() {
     let glass = "newmtl plate\nKd 1 1 1\nnewmtl glass\nKd 0 0 0\nKe 1 1 1\nTf 1 1 1\nNi 1.5\nillum 7\n";
     let floor = "usemtl plate\nv -2 0 -2\nv -2 0 2\nv 2 0 2\nv 2 0 -2\nf -4 -3 -2 -1\n";
     let scene = obj(format!("{CUBE}{floor}")).with("mesh.mtl", glass).load("mesh.obj");
     assert_eq!((scene.triangle_count(), emissive(&scene).len()), (14, 12));
-    warned(&scene, &["2 triangle(s)", "emit and let light through", "move one of them"]);
+    warned(&scene, &["2 triangle(s)", "drawn in", "`glass`"]);
+    assert_eq!(scene.warnings.iter().filter(|warning| warning.contains("triangle(s)")).count(), 1);
     // Two that touch have a face in common, which belongs to both.
     let scene = instances(CUBE, glass, &["".into(), "translate = [1, 0, 0]".into()]);
     assert_eq!(scene.triangle_count(), 24);
-    warned(&scene, &["emit and let light through"]);
+    warned(&scene, &["2 triangle(s)", "drawn in", "`glass`"]);
 }
 
 /// What was in one place twice is gone before anybody is told to remove it.

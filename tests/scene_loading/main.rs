@@ -15,6 +15,7 @@ mod settings;
 mod smoothing;
 mod textures;
 mod toml;
+mod touching;
 
 use luminaire::Error;
 use luminaire::scene::{Material, Scene, load};

@@ -55,6 +55,8 @@ pub fn load(path: &Path) -> Result<Scene> {
     };
     let merged = scene.merge_overlapping_lamps();
     scene.warnings.extend(merged);
+    let parted = scene.part_touching_glass();
+    scene.warnings.extend(parted);
     // What was there twice may be gone by now.
     scene.warnings.extend(bodies::warnings(&scene));
     alike::shorten(&mut scene.warnings);

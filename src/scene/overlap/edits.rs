@@ -1,5 +1,6 @@
 //! Changes to single triangles of single objects, where other objects may share the mesh.
 
+use super::pull::{Depth, Pulled, pull};
 use crate::scene::{Mesh, Object, Scene, Triangle, outward, widen};
 use glam::{DAffine3, DVec3, Vec2, Vec3};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -7,6 +8,9 @@ use std::sync::Arc;
 
 /// Instances share what is added to them where it differs by less, for each unit of its coordinates.
 const SAME_CORNER: f64 = 1e-6;
+
+/// Triangles of meshes that are made anew: as many as the scene has, or if it has few, so many.
+const MOST_COPIED: usize = 1 << 18;
 
 /// Changes to the triangles of objects, in world space.
 #[derive(Debug, Default)]
@@ -22,6 +26,8 @@ struct ObjectEdits {
     materials: BTreeMap<u32, u32>,
     /// By triangle, how far it moves.
     moved: BTreeMap<u32, f64>,
+    /// By triangle of a body of glass, how far it is drawn in, to its inward side, with the corners that it shares.
+    pulled: BTreeMap<u32, Depth>,
     /// Triangles of which a second one is made that faces the other way, and moves as far that way; with its material.
     turned: BTreeMap<u32, u32>,
     added: Vec<Added>,
@@ -45,6 +51,7 @@ struct Shape<'a> {
     removed: &'a BTreeSet<u32>,
     materials: &'a BTreeMap<u32, u32>,
     moved: Vec<u32>,
+    pulled: Vec<u32>,
     turned: &'a BTreeMap<u32, u32>,
     added: Vec<u32>,
 }
@@ -61,6 +68,8 @@ struct Planned {
     objects: Vec<u32>,
     /// In object space; what moves does so as far as any of the objects asks.
     edits: ObjectEdits,
+    /// What `edits.pulled` comes to.
+    pulled: Pulled,
 }
 
 impl Edits {
@@ -72,10 +81,15 @@ impl Edits {
         self.objects.entry(object).or_default().materials.insert(triangle, material);
     }
 
-    /// Moves a triangle to its outward side.
+    /// Moves a triangle to its outward side, or to the other one if the distance is negative.
     pub(super) fn shift(&mut self, object: u32, triangle: u32, by: f64) {
         let moved = self.objects.entry(object).or_default().moved.entry(triangle).or_default();
-        *moved = moved.max(by);
+        *moved = further(*moved, by);
+    }
+
+    /// Draws a face of a body of glass in, so that the body stays closed.
+    pub(super) fn pull(&mut self, object: u32, triangle: u32, depth: Depth) {
+        self.objects.entry(object).or_default().pulled.insert(triangle, depth);
     }
 
     /// A new triangle of this object, flat, counter-clockwise where it is outside, and moved to there.
@@ -103,26 +117,44 @@ impl Edits {
                 }
                 None => {
                     same_shape.push(meshes.len());
-                    meshes.push(Planned { objects: vec![*index], edits: own });
+                    meshes.push(Planned { objects: vec![*index], edits: own, pulled: Pulled::default() });
                 }
             }
+        }
+        for planned in meshes.iter_mut().filter(|planned| !planned.edits.pulled.is_empty()) {
+            let object = &scene.objects[planned.objects[0] as usize];
+            let is_body = |material: u32| scene.materials[object.material.unwrap_or(material) as usize].is_body();
+            planned.pulled = pull(&scene.meshes[object.mesh as usize], is_body, &planned.edits.pulled);
         }
         Plan { meshes }
     }
 }
 
 impl Plan {
-    /// How many triangles the meshes have that have to be made anew.
-    pub(super) fn copies(&self, scene: &Scene) -> usize {
+    /// How many triangles the meshes have that would have to be made anew, if they are too many.
+    pub(super) fn too_many(&self, scene: &Scene) -> Option<usize> {
         let mesh = |planned: &Planned| scene.objects[planned.objects[0] as usize].mesh as usize;
-        self.meshes.iter().map(|planned| scene.meshes[mesh(planned)].triangles.len()).sum()
+        let copies = self.meshes.iter().map(|planned| scene.meshes[mesh(planned)].triangles.len()).sum();
+        let own: usize = scene.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
+        (copies > own.max(MOST_COPIED)).then_some(copies)
+    }
+
+    /// Objects and triangles of faces of glass that stay where they are, since their bodies are too thin to be drawn in.
+    pub(super) fn stuck(&self) -> impl Iterator<Item = (u32, u32)> + '_ {
+        self.meshes.iter().flat_map(|planned| {
+            let objects = planned.objects.iter();
+            objects.flat_map(|object| planned.pulled.stuck.iter().map(|triangle| (*object, *triangle)))
+        })
     }
 
     /// Makes the changes. Objects that have no triangle left go, and meshes that no object shows any longer.
     pub(super) fn apply(self, scene: &mut Scene) {
-        for Planned { objects, edits } in self.meshes {
+        for Planned { objects, edits, pulled } in self.meshes {
+            if edits.only_pulls() && pulled.corners.is_empty() {
+                continue;
+            }
             let first = &scene.objects[objects[0] as usize];
-            let mesh = edited(&scene.meshes[first.mesh as usize], first, &edits);
+            let mesh = edited(&scene.meshes[first.mesh as usize], first, &edits, &pulled);
             let number = scene.meshes.len() as u32;
             scene.meshes.push(Arc::new(mesh));
             for index in objects {
@@ -153,13 +185,20 @@ impl ObjectEdits {
         !(self.materials.is_empty() && self.added.is_empty() && self.turned.is_empty())
     }
 
+    /// Whether nothing but bodies of glass is changed.
+    fn only_pulls(&self) -> bool {
+        !self.changes_materials() && self.removed.is_empty() && self.moved.is_empty()
+    }
+
     fn shape(&self, object: &Object) -> Shape<'_> {
         Shape {
             mesh: object.mesh,
-            material: object.material.filter(|_| self.changes_materials()),
+            // What is glass goes by it, too.
+            material: object.material.filter(|_| self.changes_materials() || !self.pulled.is_empty()),
             removed: &self.removed,
             materials: &self.materials,
             moved: self.moved.keys().copied().collect(),
+            pulled: self.pulled.keys().copied().collect(),
             turned: &self.turned,
             added: self.added.iter().map(|added| added.material).collect(),
         }
@@ -174,7 +213,7 @@ impl ObjectEdits {
         let distance = |normal: DVec3, by: f64| by * (normal_to_world * normal.normalize_or_zero()).length();
         // An object that mirrors turns the winding of its triangles; outside stays outside.
         let mirrored = to_world.matrix3.determinant() < 0.0;
-        let moved = self.moved.iter();
+        let factor = |triangle: u32| distance(outward(mesh, &mesh.triangles[triangle as usize]), 1.0);
         let added = self.added.iter().map(|added| {
             let [a, b, c] = added.corners.map(|p| to_object.transform_point3(p));
             let [a, b, c] = if mirrored { [a, c, b] } else { [a, b, c] };
@@ -182,7 +221,8 @@ impl ObjectEdits {
             Added { corners: [a, b, c], moved, ..*added }
         });
         ObjectEdits {
-            moved: moved.map(|(t, by)| (*t, distance(outward(mesh, &mesh.triangles[*t as usize]), *by))).collect(),
+            moved: self.moved.iter().map(|(t, by)| (*t, factor(*t) * by)).collect(),
+            pulled: self.pulled.iter().map(|(t, depth)| (*t, depth.times(factor(*t)))).collect(),
             added: added.collect(),
             ..self.clone()
         }
@@ -198,19 +238,27 @@ impl ObjectEdits {
 
     /// Moves what moves at least as far as `other` does, for changes of one shape.
     fn move_as_far(&mut self, other: &ObjectEdits) {
-        self.moved.values_mut().zip(other.moved.values()).for_each(|(own, by)| *own = own.max(*by));
+        self.moved.values_mut().zip(other.moved.values()).for_each(|(own, by)| *own = further(*own, *by));
+        self.pulled.values_mut().zip(other.pulled.values()).for_each(|(own, by)| *own = own.max(*by));
         self.added.iter_mut().zip(&other.added).for_each(|(own, by)| own.moved = own.moved.max(by.moved));
     }
 }
 
+/// The distance that is further, to either side.
+fn further(a: f64, b: f64) -> f64 {
+    if b.abs() > a.abs() { b } else { a }
+}
+
 /// The mesh of an object after its changes, which are in object space.
-fn edited(mesh: &Mesh, object: &Object, edits: &ObjectEdits) -> Mesh {
+fn edited(mesh: &Mesh, object: &Object, edits: &ObjectEdits, pulled: &Pulled) -> Mesh {
     let mut new = Mesh { triangles: Vec::with_capacity(mesh.triangles.len()), ..mesh.clone() };
     let own_materials = edits.changes_materials();
     let by = |index: u32| {
         let distance = edits.moved.get(&index).copied().unwrap_or(0.0);
         outward(mesh, &mesh.triangles[index as usize]).normalize_or_zero() * distance
     };
+    // Corners of a body that move together stay one vertex.
+    let mut known: HashMap<(u32, [u64; 3]), u32> = HashMap::new();
     for (index, triangle) in (0..).zip(&mesh.triangles) {
         if edits.removed.contains(&index) {
             continue;
@@ -222,6 +270,12 @@ fn edited(mesh: &Mesh, object: &Object, edits: &ObjectEdits) -> Mesh {
         }
         if edits.moved.contains_key(&index) {
             triangle.vertices = triangle.vertices.map(|v| moved(&mut new, v, by(index), 1.0));
+        }
+        if let Some(by) = pulled.corners.get(&index) {
+            for (vertex, by) in triangle.vertices.iter_mut().zip(by).filter(|(_, by)| **by != DVec3::ZERO) {
+                let key = (*vertex, by.to_array().map(f64::to_bits));
+                *vertex = *known.entry(key).or_insert_with(|| moved(&mut new, *vertex, *by, 1.0));
+            }
         }
         new.triangles.push(triangle);
     }

@@ -1,7 +1,7 @@
 //! A triangle in world space, and how two of them lie.
 
-use crate::scene::outward;
-use crate::scene::{Mesh, Triangle};
+use crate::scene::rounding::across;
+use crate::scene::{Mesh, Scene, Triangle, outward};
 use glam::{DAffine3, DVec3, Vec3A};
 use obvhs::aabb::Aabb;
 
@@ -81,18 +81,38 @@ impl Face {
         self.corners.iter().sum::<DVec3>() / 3.0
     }
 
-    /// How far it is moved off another triangle that it lies on, if that takes at least `needed`: further than rays usually round by, but so
-    /// little that nobody sees it. None if there is no such distance.
-    pub(super) fn lift(&self, needed: f64) -> Option<f64> {
+    /// Object, material and place, for people.
+    pub(super) fn describe(&self, scene: &Scene) -> String {
+        let object = &scene.objects[self.object as usize].name;
+        let material = &scene.materials[self.material as usize].name;
+        let DVec3 { x, y, z } = self.centre() + scene.origin;
+        format!("object `{object}`, material `{material}`, at ({x:.6} {y:.6} {z:.6})")
+    }
+
+    /// How far it has to be off another one in whose plane it lies, so that rays tell them apart: the bounds on the rounding of both.
+    pub(super) fn needed(&self, scene: &Scene, other: &Face) -> f64 {
+        let rounding = |face: &Face| across(scene, face.object, face.triangle, face.corners).0;
+        rounding(self) + rounding(other) + self.tolerance(other)
+    }
+
+    /// How far it is usually moved off another triangle: further than rays usually round by, but so little that nobody sees it.
+    pub(super) fn usual_lift(&self) -> f64 {
+        (USUAL_LIFT * self.reach.max(self.size)).min(self.most_lift())
+    }
+
+    fn most_lift(&self) -> f64 {
         let [a, b, c] = self.corners;
         // The side of the square of which it would be half.
-        let side = (b - a).cross(c - a).length().sqrt();
-        let most = MOST_LIFT * side;
-        (needed <= most).then(|| needed.max(USUAL_LIFT * self.reach.max(self.size)).min(most))
+        MOST_LIFT * (b - a).cross(c - a).length().sqrt()
+    }
+
+    /// How far it is moved off another triangle that it lies on, if that takes at least `needed`. None if that would be seen.
+    pub(super) fn lift(&self, needed: f64) -> Option<f64> {
+        (needed <= self.most_lift()).then(|| needed.max(self.usual_lift()))
     }
 
     /// How far another one may lie off its plane, and still be taken to lie in it.
-    pub(super) fn tolerance(&self, other: &Face) -> f64 {
+    fn tolerance(&self, other: &Face) -> f64 {
         (SAME_PLACE * self.reach.max(other.reach)).min(LEAST_SHAPE * self.size.min(other.size))
     }
 

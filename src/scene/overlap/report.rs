@@ -7,7 +7,23 @@ pub(super) struct Found {
     pub first: String,
 }
 
-/// What was found, each a warning.
+impl Found {
+    /// Counts more of it; `first` describes the first one.
+    pub(super) fn add(&mut self, count: usize, first: impl FnOnce() -> String) {
+        if self.count == 0 {
+            self.first = first();
+        }
+        self.count += count;
+    }
+
+    /// A warning, if anything was found.
+    pub(super) fn sentence(&self, path: &str, what: &str) -> Option<String> {
+        let Found { count, first } = self;
+        (*count > 0).then(|| format!("{path}: {count} triangle(s) {what} ({first})"))
+    }
+}
+
+/// What was found of lamps, each a warning.
 #[derive(Debug, Default)]
 pub(super) struct Report {
     pub same: Found,
@@ -19,7 +35,8 @@ pub(super) struct Report {
     pub hidden: Found,
     pub unresolved: Found,
     pub in_plane: Found,
-    pub undecided: Found,
+    pub cut: Found,
+    pub cut_out: Found,
     pub glowing: Found,
     pub stuck: Found,
     /// Not all triangles were compared: there are too many in one place.
@@ -47,7 +64,7 @@ impl Report {
             (&self.hidden, "that do not emit lie exactly on lamps: they are dropped, and the lamps show"),
             (
                 &self.veils,
-                "that are partly transparent lie on others of the same material: they are dropped, so that the opacity counts once",
+                "that are partly transparent, or thin panes, lie on others of the same material: they are dropped, so that the opacity counts once",
             ),
             (
                 &self.unresolved,
@@ -58,23 +75,23 @@ impl Report {
                 "that do not emit lie in the plane of lamps and cover a part of them: the lamps are moved off that plane by a hair, so that they show",
             ),
             (
-                &self.undecided,
-                "that transmit light lie in the plane of lamps: which of the two is met first is left to rounding; move one of them",
+                &self.cut,
+                "that emit are covered in a part by lamps of another light in their plane: the first counts, and what it covers is cut out of them",
+            ),
+            (
+                &self.cut_out,
+                "that do not emit lie in the plane of lamps and cover a part of them: what is covered is cut out of them, so that the lamps show",
             ),
             (
                 &self.glowing,
-                "that emit and let light through lie in the plane of other triangles, and are left as they are: which of the two is met first is left to rounding; move one of them",
+                "that emit and are partly transparent lie in the plane of other triangles, and are left as they are: which of the two is met first is left to rounding; move one of them",
             ),
             (
                 &self.stuck,
                 "that emit lie in the plane of others that are so large, or so far from the origin, that to move them by what single precision tells apart there would show: which of the two is met first is left to rounding; cut or move them",
             ),
         ];
-        let mut sentences: Vec<String> = kinds
-            .iter()
-            .filter(|(found, _)| found.count > 0)
-            .map(|(Found { count, first }, what)| format!("{path}: {count} triangle(s) {what} ({first})"))
-            .collect();
+        let mut sentences: Vec<String> = kinds.iter().filter_map(|(found, what)| found.sentence(path, what)).collect();
         if self.unsearched {
             sentences.push(format!(
                 "{path}: too many lamps lie close together to compare all of them; light may be counted twice where they overlap"
