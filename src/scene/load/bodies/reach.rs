@@ -16,10 +16,10 @@ const MOST_BODIES: usize = 1 << 16;
 /// Pairs of bodies whose boxes overlap that are compared.
 const MOST_PAIRS: usize = 1 << 10;
 /// Faces of a body that is compared with others.
-const MOST_FACES: usize = 1 << 20;
-/// Solid angles of triangles for a pair of bodies, and for all of them.
+const MOST_FACES: usize = 1 << 19;
+/// Solid angles of triangles for a pair of bodies, and for all of them, before the last pair.
 const ANGLES_OF_A_PAIR: usize = 1 << 18;
-const MOST_ANGLES: usize = 1 << 24;
+const MOST_ANGLES: usize = 1 << 25;
 /// Points of a body that are tested against another: at least and at most.
 const POINTS: [usize; 2] = [16, 256];
 /// Bodies that reach less far into each other, as a part of the size of the smaller one, touch.
@@ -53,18 +53,25 @@ enum Side {
 pub(super) fn sentence(scene: &Scene, uses: &[Use], seams: &Seams) -> Option<String> {
     let bodies = bodies(scene, uses, seams);
     let by_surface: Vec<_> = uses.iter().map(by_surface).collect();
-    let mut angles = 0;
+    let pairs = pairs(&bodies);
+    let (mut angles, mut complete) = (0, pairs.len() < MOST_PAIRS);
     let mut found: Vec<(usize, usize, [f64; 2], Option<DVec3>)> = Vec::new();
-    for (a, b) in pairs(&bodies) {
+    for (a, b) in pairs {
+        if is_one_object(scene, &bodies[a], &bodies[b]) {
+            continue;
+        }
         let count =
             |body: &Body| body.parts.iter().map(|(of, part)| by_surface[*of][part.1 as usize].len()).sum::<usize>();
-        let counts = [count(&bodies[a]), count(&bodies[b])];
-        angles += 4 * counts.map(|count| count * points(count)).iter().sum::<usize>();
-        if angles > MOST_ANGLES || counts.iter().any(|count| *count > MOST_FACES) {
+        if angles > MOST_ANGLES {
+            complete = false;
             break;
         }
+        if [a, b].iter().any(|body| count(&bodies[*body]) > MOST_FACES) {
+            continue;
+        }
         let [of_a, of_b] = [&bodies[a], &bodies[b]].map(|body| faces(scene, uses, &by_surface, body));
-        if let Some(place) = overlap((&bodies[a], &of_a), (&bodies[b], &of_b)) {
+        angles += of_a.corners.len() + of_b.corners.len();
+        if let Some(place) = overlap((&bodies[a], &of_a), (&bodies[b], &of_b), &mut angles) {
             found.push((a, b, [of_a.index, of_b.index], place));
         }
     }
@@ -93,7 +100,12 @@ pub(super) fn sentence(scene: &Scene, uses: &[Use], seams: &Seams) -> Option<Str
         }
         None => "lie on each other with all of their surface".into(),
     };
-    let more = if found.len() > 1 { format!(" (and {} more pairs)", found.len() - 1) } else { String::new() };
+    let at_least = if complete { "" } else { "at least " };
+    let more = match found.len() {
+        1 => String::new(),
+        2 => format!(" (and {at_least}1 more pair)"),
+        n => format!(" (and {at_least}{} more pairs)", n - 1),
+    };
     Some(format!(
         "{who} of glass ({}) {how}{more}: where they overlap, their indices of refraction multiply ({:.3} times {:.3}); take them apart, put one \
          wholly into the other, or let them share faces that have the index behind them over that in front",
@@ -173,6 +185,13 @@ fn pairs(bodies: &[Body]) -> Vec<(usize, usize)> {
     pairs
 }
 
+/// Whether both are the same mesh in the same place, which is told for itself.
+fn is_one_object(scene: &Scene, a: &Body, b: &Body) -> bool {
+    let [a, b] = [a, b].map(|body| body.parts[0].1.0);
+    let (one, other) = (&scene.objects[a], &scene.objects[b]);
+    a != b && one.mesh == other.mesh && one.object_to_world == other.object_to_world
+}
+
 /// How far bodies may reach into each other that are taken to touch.
 fn touching(a: &Body, b: &Body) -> f64 {
     let reach = [a, b].map(|body| body.low.abs().max(body.high.abs()).max_element());
@@ -197,7 +216,7 @@ fn faces(scene: &Scene, uses: &[Use], by_surface: &[Vec<Vec<u32>>], body: &Body)
 }
 
 /// Whether two bodies reach through each other's surface, and where; nowhere in particular if they are the same.
-fn overlap(a: (&Body, &Faces), b: (&Body, &Faces)) -> Option<Option<DVec3>> {
+fn overlap(a: (&Body, &Faces), b: (&Body, &Faces), angles: &mut usize) -> Option<Option<DVec3>> {
     let margin = touching(a.0, b.0);
     for (one, other) in [(a, b), (b, a)] {
         let sticks_out = one
@@ -210,6 +229,7 @@ fn overlap(a: (&Body, &Faces), b: (&Body, &Faces)) -> Option<Option<DVec3>> {
         let (mut outside, mut same, mut count) = (sticks_out, true, 0);
         for (point, normal) in samples(&one.1.corners, [other.0.low, other.0.high], points(other.1.corners.len())) {
             let side = side(point, normal * margin, &other.1.corners);
+            *angles += 2 * other.1.corners.len();
             count += 1;
             same &= side == Side::SameSurface;
             outside |= side == Side::Outside;
