@@ -26,6 +26,9 @@ const PARALLEL: f64 = 1e-3;
 /// A surface of an object: the number of the object, and that of the surface in its glass.
 pub(super) type Part = (usize, u32);
 
+/// Surfaces of other objects: these, their uses, and the surfaces.
+type Others = BTreeSet<(usize, usize, u32)>;
+
 /// What all objects together leave open, and what they close.
 #[derive(Default)]
 pub(super) struct Seams {
@@ -46,7 +49,7 @@ pub(super) struct Faults {
     pub open: Vec<(u32, u32)>,
     pub wrong: Vec<(u32, u32)>,
     /// Surfaces of other objects at these edges.
-    pub with: BTreeSet<(usize, usize, u32)>,
+    pub with: Others,
     /// Surfaces that are flat, with all that they are joined to.
     pub sheets: HashSet<u32>,
 }
@@ -253,7 +256,7 @@ fn close(
     candidates: &[Candidate],
     near: &mut Near,
     parts: &mut Parts,
-) -> (Vec<State>, HashMap<usize, BTreeSet<(usize, usize, u32)>>) {
+) -> (Vec<State>, HashMap<usize, Others>) {
     let around = |edge: &[Edge]| -> f64 {
         let signed = |&(.., ahead, number): &Edge| {
             let candidate = &candidates[number as usize];
@@ -291,7 +294,7 @@ fn close(
     }
     let covered = covered(scene, &faulty, near);
     let mut states = vec![State::Closed; candidates.len()];
-    let mut with: HashMap<usize, BTreeSet<(usize, usize, u32)>> = HashMap::new();
+    let mut with: HashMap<usize, Others> = HashMap::new();
     for edge in faulty {
         let all = || edge.iter().map(|edge| (edge.3 as usize, &candidates[edge.3 as usize]));
         let is_covered = covered.contains(&(edge[0].0, edge[0].1)) || all().any(|(_, of)| of.loose.covered);
