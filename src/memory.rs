@@ -56,10 +56,11 @@ fn processors() -> u64 {
 }
 
 /// Refuses to load a driver where it would not have the address space that it wants: drivers do not ask whether they got it, and bring the process down.
+/// Whatever opens a device asks this first.
 ///
 /// # Errors
 /// [`Error::NoDevice`].
-pub(crate) fn check_driver() -> Result<()> {
+pub fn check_driver() -> Result<()> {
     let wanted = DRIVER + DRIVER_THREAD * processors();
     match address_space().filter(|left| *left < wanted) {
         None => Ok(()),

@@ -4,7 +4,7 @@ mod choice;
 mod devices;
 mod renderer;
 
-pub use crate::memory::fit_threads;
+pub use crate::memory::{check_driver, fit_threads};
 pub use choice::{Backend, Request};
 pub use devices::{DeviceReport, devices};
 pub use renderer::{Renderer, open};

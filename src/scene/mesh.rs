@@ -21,6 +21,13 @@ pub struct Mesh {
 }
 
 impl Mesh {
+    /// The corners of the triangles in object space, each vertex once; vertices that no triangle has are none.
+    pub(crate) fn corners(&self) -> Vec<DVec3> {
+        let mut shown = vec![false; self.positions.len()];
+        self.triangles.iter().flat_map(|triangle| triangle.vertices).for_each(|vertex| shown[vertex as usize] = true);
+        self.positions.iter().zip(shown).filter(|(_, shown)| *shown).map(|(position, _)| position.as_dvec3()).collect()
+    }
+
     /// Object-space bounding box of the positions.
     pub fn bounds(&self) -> (Vec3, Vec3) {
         self.positions.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)))

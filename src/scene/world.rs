@@ -69,6 +69,30 @@ impl Scene {
         &self.materials[object.material.unwrap_or(triangle.material) as usize]
     }
 
+    /// World-space bounding box of all triangles of all instances, the smallest: every corner counts, so that it takes longer than
+    /// [`Scene::world_bounds`].
+    pub fn tight_bounds(&self) -> (DVec3, DVec3) {
+        let mut corners: Vec<Option<Vec<DVec3>>> = vec![None; self.meshes.len()];
+        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        for object in &self.objects {
+            let to_world = widen(object.object_to_world);
+            let mesh = &self.meshes[object.mesh as usize];
+            let corners = corners[object.mesh as usize].get_or_insert_with(|| mesh.corners());
+            let (a, b) =
+                corners.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), p| (a.min(*p), b.max(*p)));
+            let [a, b] = moved_box([a, b], &to_world);
+            // Most instances lie within what others reach.
+            if a.cmpge(low).all() && b.cmple(high).all() {
+                continue;
+            }
+            for corner in corners.iter() {
+                let place = to_world.transform_point3(*corner);
+                (low, high) = (low.min(place), high.max(place));
+            }
+        }
+        (low, high)
+    }
+
     /// World-space bounding box of all instances (of the corners of the meshes' own boxes, so not always the smallest).
     pub fn world_bounds(&self) -> (glam::DVec3, glam::DVec3) {
         let boxes: Vec<_> = self.meshes.iter().map(|mesh| mesh.bounds()).collect();
@@ -87,8 +111,32 @@ impl Scene {
 #[cfg(test)]
 mod tests {
     use crate::scene::build::{add, empty, matte, quad};
-    use glam::{Affine3A, Vec3};
+    use glam::{Affine3A, DVec3, Quat, Vec3};
     use std::sync::Arc;
+
+    #[test]
+    fn tight_bounds_are_those_of_the_turned_triangles() {
+        let mut scene = empty(1, 1);
+        // A square on its corner becomes one on its side, twice.
+        let diamond = quad(Vec3::ZERO, Vec3::new(1.0, 1.0, 0.0), Vec3::new(-1.0, 1.0, 0.0));
+        let turn = Affine3A::from_quat(Quat::from_rotation_z(-std::f32::consts::FRAC_PI_4));
+        add(&mut scene, diamond, matte(Vec3::ONE), turn);
+        let inner = scene.objects[0].clone();
+        scene.objects.push(super::Object { object_to_world: Affine3A::from_scale(Vec3::splat(0.25)) * turn, ..inner });
+        // A vertex that no triangle has.
+        Arc::make_mut(&mut scene.meshes[0]).positions.push(Vec3::splat(9.0));
+        let (low, high) = scene.tight_bounds();
+        let root = std::f64::consts::SQRT_2;
+        assert!(
+            (low - DVec3::ZERO).length() < 1e-6 && (high - DVec3::new(root, root, 0.0)).length() < 1e-6,
+            "{low} {high}"
+        );
+        let (_, loose) = scene.world_bounds();
+        assert!(loose.x > 2.0, "{loose}");
+        scene.objects.truncate(1);
+        scene.objects[0].object_to_world = Affine3A::from_translation(Vec3::splat(5.0));
+        assert_eq!(scene.tight_bounds(), (DVec3::new(4.0, 5.0, 5.0), DVec3::new(6.0, 7.0, 5.0)));
+    }
 
     #[test]
     fn a_clone_shares_what_is_large() {

@@ -190,6 +190,205 @@ fn other_objects_may_hold_a_hollow_and_one_body_may_not_stand_twice() {
     assert_eq!(glass(&format!("{hollow}{thin}")), Vec::<String>::new());
 }
 
+/// A scene of OBJs in glass, each with its part of the text of an `[[object]]`; what is warned of.
+fn parts(objects: &[(&str, &str, &str)], more: &str) -> Vec<String> {
+    let mut folder = Folder::new().with("g.mtl", GLASS);
+    let mut scene = format!("{SENSOR}{LIGHT}{more}");
+    for (name, mesh, place) in objects {
+        folder = folder.with(&format!("{name}.obj"), format!("mtllib g.mtl\nusemtl g\n{mesh}"));
+        write!(scene, "[[object]]\nmesh = \"{name}.obj\"\n{place}\n").expect("a string");
+    }
+    folder.with("scene.toml", scene).load("scene.toml").warnings
+}
+
+/// All but the lid of the unit box (x = 1), and the lid.
+fn box_and_lid() -> (String, String) {
+    let cube = faces(1);
+    (unit() + &written(&cube[..5]), unit() + &written(&cube[5..]))
+}
+
+#[test]
+fn parts_of_a_body_may_stand_in_several_objects() {
+    let (open, lid) = box_and_lid();
+    let none = Vec::<String>::new();
+    assert_eq!(parts(&[("box", &open, ""), ("lid", &lid, "")], ""), none);
+    // Each with its own rounding: turned, scaled, moved, and the lid made elsewhere in other units.
+    let turned = "rotate = [17, 31, 47]\nscale = 0.37\ntranslate = [3.3, 2.7, -5.1]";
+    assert_eq!(parts(&[("box", &open, turned), ("lid", &lid, turned)], ""), none);
+    let large: String = corners([0.0; 3], [1000.0; 3]) + &written(&faces(1)[5..]);
+    let of_large = turned.replace("0.37", "0.00037");
+    assert_eq!(parts(&[("box", &open, turned), ("lid", &large, &of_large)], ""), none);
+    // Six decimals of something small.
+    let small = corners([0.0; 3], [0.033_333; 3]) + &written(&faces(1)[..5]);
+    let small_lid = corners([0.0; 3], [0.033_333_4; 3]) + &written(&faces(1)[5..]);
+    assert_eq!(parts(&[("box", &small, ""), ("lid", &small_lid, "")], ""), none);
+    // Mirrored: the lid of x = 0 is that of x = 1 seen in a mirror.
+    let other_side = unit() + &written(faces(1).iter().enumerate().filter(|(i, _)| *i != 4).map(|(_, face)| face));
+    let mirrored = "scale = [-1, 1, 1]\ntranslate = [1, 0, 0]";
+    assert_eq!(parts(&[("box", &other_side, ""), ("lid", &lid, mirrored)], ""), none);
+    // The lid is one face, the box has a corner in the middle of an edge of it; or the lid in two halves, in two objects.
+    let halves = "v 1 0.5 0\nv 1 0.5 1\n";
+    let low = unit() + halves + "f 2 9 10 6\n";
+    let high = unit() + halves + "f 9 4 8 10\n";
+    assert_eq!(parts(&[("box", &open, ""), ("low", &low, ""), ("high", &high, "")], ""), none);
+    // Six faces in six objects.
+    let six: Vec<String> = faces(1).iter().map(|face| unit() + &written([face])).collect();
+    let names = ["a", "b", "c", "d", "e", "f"];
+    let six: Vec<_> = names.iter().zip(&six).map(|(name, mesh)| (*name, mesh.as_str(), "")).collect();
+    assert_eq!(parts(&six, ""), none);
+    // A lid of another material, that is no glass, in another object.
+    let wood = "material = \"lid\"";
+    assert_eq!(parts(&[("box", &open, ""), ("lid", &lid, wood)], ""), none);
+    // Water and glass that share a face, each in its object, and the face in a third.
+    let (left, right) = (faces(1), faces(9));
+    let positions = unit() + &corners([1.0, 0.0, 0.0], [2.0, 1.0, 1.0]);
+    let water =
+        positions.clone() + "usemtl water\n" + &written([&right[0], &right[1], &right[2], &right[3], &right[5]]);
+    let between = positions.clone() + "usemtl between\n" + &written(&reversed(&left[5..]));
+    let glass = positions + &written(&left[..5]);
+    assert_eq!(parts(&[("glass", &glass, ""), ("water", &water, ""), ("between", &between, "")], ""), none);
+}
+
+#[test]
+fn parts_that_do_not_close_a_body_are_named_once() {
+    let (open, lid) = box_and_lid();
+    let one = |objects: &[(&str, &str, &str)], words: &[&str]| {
+        let warnings = parts(objects, "");
+        assert!(warnings.len() == 1 && words.iter().all(|word| warnings[0].contains(word)), "{warnings:?}");
+    };
+    // A lid that is turned, or of another index: no pane.
+    let turned = unit() + &written(&reversed(&faces(1)[5..]));
+    one(&[("box", &open, ""), ("lid", &turned, "")], &["object `box` (box.obj), with `lid`", "4 edges between faces"]);
+    let water = "material = \"water\"";
+    one(&[("box", &open, ""), ("lid", &lid, water)], &["with `lid`: the glass of material `g`, `water`", "4 edges"]);
+    // The second instance has no lid.
+    let away = "translate = [3, 0, 0]";
+    one(
+        &[("box", &open, &format!("[[object]]\nname = \"far\"\nmesh = \"box.obj\"\n{away}")), ("lid", &lid, "")],
+        &["object `far` (box.obj)", "4 open edges"],
+    );
+    // A gap that can be seen.
+    let warnings = parts(&[("box", &open, ""), ("lid", &lid, "translate = [0.001, 0, 0]")], "");
+    assert_eq!(warnings.len(), 2, "{warnings:?}");
+    // Two halves of a pane are a pane.
+    let half = |low: f32, high: f32| corners([low, 0.0, 0.0], [high, 1.0, 0.0]) + "f 1 2 4 3\n";
+    let warnings = parts(&[("left", &half(0.0, 1.0), ""), ("right", &half(1.0, 2.0), "")], "");
+    assert!(
+        warnings.len() == 2 && warnings.iter().all(|w| w.contains("3 open edges") && w.contains("a pane")),
+        "{warnings:?}"
+    );
+    // Inside out, all together.
+    let (inner, inner_lid) = (reversed(&faces(1)[..5]), reversed(&faces(1)[5..]));
+    let (inner, inner_lid) = (unit() + &written(&inner), unit() + &written(&inner_lid));
+    one(&[("box", &inner, ""), ("lid", &inner_lid, "")], &["a body of glass (`g`) is inside out"]);
+    // But a hollow of two objects, in a body of two.
+    let within = "scale = 0.5\ntranslate = [0.25, 0.25, 0.25]";
+    let hollow = [("box", &*open, ""), ("lid", &*lid, ""), ("hollow", &*inner, within), ("plug", &*inner_lid, within)];
+    assert_eq!(parts(&hollow, ""), Vec::<String>::new());
+}
+
+#[test]
+fn bodies_that_reach_through_each_other_are_named_once() {
+    let cube = unit() + &written(&faces(1));
+    let two = |place: &str| parts(&[("a", &cube, ""), ("b", &cube, place)], "");
+    let said = |warnings: &[String], words: &[&str]| {
+        assert!(warnings.len() == 1 && words.iter().all(|word| warnings[0].contains(word)), "{warnings:?}");
+    };
+    let of_both = "objects `a`, `b`: bodies of glass (`g`) reach through each other's surface";
+    for place in [
+        "translate = [0.5, 0.25, 0.125]",
+        // Faces in one plane.
+        "translate = [0.5, 0, 0]",
+        "translate = [0.99, 0, 0]",
+        "rotate = [20, 30, 40]",
+        "scale = [-1, 1, 1]\ntranslate = [1.5, 0.2, 0.2]",
+        // Crossing bars: no corner of either is within the other.
+        "scale = [5, 0.2, 0.2]\ntranslate = [-2, 0.4, 0.4]",
+        "scale = [5, 0.2, 1]\ntranslate = [-2, 0.4, 0]",
+    ] {
+        said(&two(place), &[of_both, "1.500 times 1.500"]);
+    }
+    let bars = [("a", &*cube, "scale = [8, 0.2, 0.2]"), ("b", &*cube, "scale = [8, 0.2, 0.2]\nrotate = [0, 10, 40]")];
+    said(&parts(&bars, ""), &["reach through"]);
+    // In one mesh; of two materials; several pairs.
+    let shifted = corners([0.5; 3], [1.5; 3]) + "usemtl water\n" + &written(&faces(9));
+    named(&(unit() + &written(&faces(1)) + &shifted), &["two bodies of glass (`g`, `water`)", "1.500 times 1.330"]);
+    let places = ["", "translate = [0.5, 0.3, 0.3]", "translate = [0.3, 0.6, 0.6]"];
+    let three = [("a", &*cube, places[0]), ("b", &cube, places[1]), ("c", &cube, places[2])];
+    said(&parts(&three, ""), &["(and 2 more pairs)"]);
+    // A part of a body that several objects close.
+    let (open, lid) = box_and_lid();
+    let water = "material = \"water\"\ntranslate = [0.5, 0.3, 0.3]";
+    said(&parts(&[("box", &open, ""), ("lid", &lid, ""), ("water", &cube, water)], ""), &["`water`", "1.330"]);
+    // The same body in another file, in the same place.
+    said(&two(""), &["objects `a`, `b`", "lie on each other"]);
+    said(&two("scale = [-1, 1, 1]\ntranslate = [1, 0, 0]"), &["lie on each other"]);
+
+    let none = Vec::<String>::new();
+    for place in [
+        // Apart, nested, and nested with a side in common.
+        "translate = [1.1, 0, 0]",
+        "scale = 0.5\ntranslate = [0.25, 0.25, 0.25]",
+        "scale = 0.5\ntranslate = [0, 0, 0]",
+        // A side, a part of a side, an edge, a corner in common.
+        "translate = [1, 0, 0]",
+        "translate = [1, 0.5, 0.5]",
+        "translate = [1, 1, 0]",
+        "translate = [1, 1, 1]",
+        "translate = [0.99999, 0, 0]",
+    ] {
+        assert_eq!(two(place), none, "{place}");
+    }
+    // Their boxes overlap, and they do not: one stands on its corner beside the other.
+    let beside = "rotate = [0, 0, 45]\ntranslate = [1.1, 0.95, 0]";
+    assert_eq!(two(beside), none);
+    // A glass of thick walls: water that just fills it, and water that reaches into the wall.
+    let (hollow, fill) = (unit() + &written(&reversed(&faces(1))), unit() + &written(&faces(1)));
+    let within = "scale = [0.6, 0.6, 0.6]\ntranslate = [0.2, 0.2, 0.2]";
+    let glass = [("outer", &*cube, ""), ("inner", &*hollow, within)];
+    let water = format!("material = \"water\"\n{within}");
+    assert_eq!(parts(&[glass[0], glass[1], ("water", &fill, &water)], ""), none);
+    let wide = "material = \"water\"\nscale = [0.7, 0.3, 0.7]\ntranslate = [0.15, 0.3, 0.15]";
+    said(&parts(&[glass[0], glass[1], ("water", &fill, wide)], ""), &["`inner`, `water`", "1.500 times 1.330"]);
+}
+
+#[test]
+fn a_camera_within_glass_is_warned_of() {
+    let at = |objects: &[(&str, &str, &str)], place: &str| {
+        let mut folder = Folder::new().with("g.mtl", GLASS);
+        let mut scene = SENSOR.replace("position = [0, 0, 5]", &format!("position = {place}")) + LIGHT;
+        assert!(scene.contains(place), "{scene}");
+        for (name, mesh, place) in objects {
+            folder = folder.with(&format!("{name}.obj"), format!("mtllib g.mtl\nusemtl g\n{mesh}"));
+            write!(scene, "[[object]]\nmesh = \"{name}.obj\"\n{place}\n").expect("a string");
+        }
+        folder.with("scene.toml", scene).load("scene.toml").warnings
+    };
+    let (open, lid) = box_and_lid();
+    let whole = unit() + &written(&faces(1));
+    let inside = "[0.4, 0.45, 0.55]";
+    let said = |objects: &[(&str, &str, &str)], words: &[&str]| {
+        let warnings = at(objects, inside);
+        assert!(warnings.len() == 1 && words.iter().all(|word| warnings[0].contains(word)), "{warnings:?}");
+    };
+    said(
+        &[("ball", &whole, "")],
+        &["camera stands within glass", "1.500 (`ball`)", "2.250 times as bright", "-1.17 stops"],
+    );
+    said(&[("pool", &whole, "material = \"water\"")], &["index 1.330", "1.769 times"]);
+    said(&[("box", &open, ""), ("lid", &lid, "")], &["1.500", "`box`, `lid`"]);
+    said(&[("ball", &whole, "scale = [-3, 3, 3]\ntranslate = [2, -1, -1]")], &["1.500"]);
+    let none = Vec::<String>::new();
+    assert_eq!(at(&[("ball", &whole, "")], "[0.4, 0.45, 1.01]"), none);
+    assert_eq!(at(&[("ball", &whole, "material = \"lid\"")], inside), none);
+    // A housing: a hollow around the camera, in one object or another.
+    let hollow = unit() + &written(&reversed(&faces(1)));
+    assert_eq!(
+        at(&[("pool", &whole, ""), ("housing", &hollow, "scale = 0.5\ntranslate = [0.25, 0.25, 0.25]")], inside),
+        none
+    );
+}
+
 #[test]
 fn a_thin_material_without_transmission_is_warned_of() {
     let warnings = scene("[[material]]\nname = \"default\"\nthin = true\n").load("scene.toml").warnings;

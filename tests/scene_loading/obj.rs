@@ -233,6 +233,22 @@ fn text_in_the_wrong_encoding() {
     let error = obj(utf16).error("mesh.obj");
     assert!(error.to_string().contains("UTF-16"), "{error}");
     obj_fails("v 0 0 0\nv 1\0 0 0\n", 2, &["NUL"]);
+    obj_fails("\0\0\0", 1, &["NUL"]);
+}
+
+/// Some exporters write the zero that ends a string, or a whole block of them.
+#[test]
+fn nul_bytes_at_the_end_of_a_file_are_ignored() {
+    for (end, count) in [("\0", 1), ("\0\n", 1), ("\n\0\0\r\n", 2), (&*"\0".repeat(4096), 4096)] {
+        let scene = obj(format!("{TRIANGLE}{end}")).load("mesh.obj");
+        assert_eq!(scene.meshes[0].triangles.len(), 1);
+        warned(&scene, &["mesh.obj", &format!("{count} NUL byte(s) at its end")]);
+        let scene = with_mtl(format!("newmtl m\nKd 0.25 0.5 1{end}")).load("mesh.obj");
+        warned(&scene, &["mesh.mtl", &format!("{count} NUL byte(s) at its end")]);
+        let material = scene.materials.iter().find(|material| material.name == "m").expect("the material");
+        assert_eq!(material.lambert.to_array(), [0.25, 0.5, 1.0]);
+    }
+    obj_fails(&format!("{TRIANGLE}\0# a comment\n\0"), 5, &["NUL"]);
 }
 
 #[test]

@@ -16,7 +16,7 @@ Examples:
 
 Exit codes:
   0  at least one device is usable
-  1  none is; what to install is said
+  1  none is; what to install is said. Or a limit of the process leaves a driver too little memory
   2  wrong usage";
 
 /// What to do where no device is usable.
@@ -31,6 +31,8 @@ Until then `luminaire render` uses the CPU reference.";
 
 /// Prints a report; exit code 0 if any device is usable.
 pub fn run() -> Result<ExitCode> {
+    // Whether there is a driver is not known then, so nothing need be installed.
+    backend::check_driver()?;
     let devices = match backend::devices() {
         Ok(devices) => devices,
         Err(error) => {

@@ -1,7 +1,9 @@
 //! `luminaire stability`.
 
+use crate::shared::exit_codes::INTERRUPTED;
+use crate::shared::interrupts;
 use crate::shared::outputs::Outputs;
-use crate::shared::printing::{self, note, print};
+use crate::shared::printing::{self, Notes, note, print};
 use crate::shared::relative_path::seen_from;
 use crate::shared::table::table;
 use crate::shared::units::duration;
@@ -11,6 +13,7 @@ use luminaire_measure::Workbench;
 use luminaire_measure::stability::{Definition, Head, Outcome, SWEEPS, Sweep, named, page};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 /// What follows the options in `--help`.
@@ -49,6 +52,9 @@ pub struct Options {
     list: bool,
 }
 
+/// What an interrupt says once a sweep is done.
+const SOME: &str = "interrupted; the sweeps that are done are written, the page is not";
+
 /// Where the files go unless `--out` says otherwise.
 const FOLDER: &str = "stability";
 
@@ -64,6 +70,7 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     let file = options.page.clone().unwrap_or_else(|| folder.join("README.md"));
     std::fs::create_dir_all(&folder).map_err(|e| Error::write(&folder, format!("the folder cannot be made ({e})")))?;
     check_files(options, &folder, &file, &sweeps)?;
+    interrupts::listen(Notes { quiet: false })?;
 
     let start = Instant::now();
     let bench = Workbench::new(options.long)?;
@@ -80,10 +87,19 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     for (number, sweep) in sweeps.iter().enumerate() {
         note(&format!("{}/{} {}: {}", number + 1, sweeps.len(), sweep.name, sweep.title));
         let began = Instant::now();
-        let outcome = (sweep.run)(&bench).and_then(|done| write(&folder, sweep, &done).map(|()| done));
+        let save = |done: Sweep| interrupts::hold_off(|| write(&folder, sweep, &done)).map(|()| done);
+        let outcome = (sweep.run)(&bench).and_then(save);
         match &outcome {
-            Ok(_) => note(&format!("    done in {}", duration(began.elapsed().as_secs_f64()))),
+            Ok(_) => {
+                interrupts::written(SOME);
+                note(&format!("    done in {}", duration(began.elapsed().as_secs_f64())));
+            }
             Err(error) => printing::error(format_args!("the sweep `{}` failed: {error}", sweep.name)),
+        }
+        // While the files of the sweep were written, an interrupt had to wait.
+        if interrupts::STOP.load(Ordering::SeqCst) {
+            note(SOME);
+            return Ok(ExitCode::from(INTERRUPTED));
         }
         outcomes.push((*sweep, outcome));
     }
@@ -93,7 +109,7 @@ pub fn run(options: &Options) -> Result<ExitCode> {
         backends: ran,
         folder: seen_from(&file, &folder),
     };
-    save_text(&file, &page(&head, &outcomes))?;
+    interrupts::hold_off(|| save_text(&file, &page(&head, &outcomes)))?;
 
     let failed = outcomes.iter().filter(|(_, outcome)| outcome.is_err()).count();
     print(&format!("{} sweeps in {}: {}\n", sweeps.len(), duration(start.elapsed().as_secs_f64()), file.display()))?;

@@ -36,6 +36,19 @@ fn inspect_lists_the_fallback_where_it_is_seen() {
     assert_eq!(names(&format!("mtllib good.mtl\nusemtl lamp\n{face}")), ["lamp"]);
 }
 
+/// The bounds are those of what is seen, not those of a box that was turned with it.
+#[test]
+fn inspect_tells_the_bounds_of_what_is_turned() {
+    let folder = Folder::new();
+    folder.write("diamond.obj", "v 0 0 0\nv 1 1 0\nv 0 2 0\nv -1 1 0\nv 9 9 9\nf 1 2 3 4\n");
+    let sensor = "[sensor]\nposition = [0, 0, 5]\ntarget = [0, 0, 0]\nfov = 40\n";
+    let place = "rotate = [0, 0, 45]\ntranslate = [1, 0, 0.5]\n";
+    folder.write("turned.toml", &format!("{sensor}[[object]]\nmesh = \"diamond.obj\"\n{place}"));
+    let output = folder.luminaire(&["inspect", "turned.toml"]).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(said.contains("[-0.4142, 0.0000, 0.5000] to [1.0000, 1.4142, 0.5000]"), "{said}{}", stderr(&output));
+}
+
 #[test]
 fn a_pipe_as_a_material_library() {
     let folder = Folder::new();

@@ -185,5 +185,10 @@ fn a_sample_is_replayed() {
     let said = String::from_utf8_lossy(&output.stdout);
     assert!(output.status.success() && said.contains("pixel 8,5, sample 3"), "{said}{}", stderr(&output));
     assert!(said.contains("throughput") && said.contains("reference"), "{said}");
+    // What ended the render that lost it changes nothing.
+    for more in [&["--spp", "8"][..], &["--samples", "2..4"], &["--time", "5", "--noise", "0.1"]] {
+        let again = folder.luminaire(&[&words[..], more].concat()).output().unwrap();
+        assert!(again.status.success() && again.stdout == output.stdout, "{more:?}: {}", stderr(&again));
+    }
     assert_eq!(folder.names(), before);
 }

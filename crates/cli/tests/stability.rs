@@ -6,8 +6,9 @@ mod svg;
 
 use common::names;
 use luminaire_measure::stability::{SUMMARY, SWEEPS};
+use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 use svg::texts;
 
 fn stability(folder: &Path, words: &[&str]) -> Output {
@@ -41,6 +42,34 @@ fn the_list_has_every_sweep() {
     assert!(output.status.success());
     assert!(SWEEPS.iter().all(|sweep| listed.contains(sweep.name) && listed.contains(sweep.title)), "{listed}");
     assert!(names(folder.path()).is_empty());
+}
+
+/// An interrupt ends the sweeps at once, without half a file.
+#[cfg(unix)]
+#[test]
+fn an_interrupt_leaves_what_is_done() {
+    for signal in ["INT", "TERM"] {
+        let folder = tempfile::tempdir().unwrap();
+        let nothing = folder.path().join("no-driver.json");
+        std::fs::write(&nothing, "").unwrap();
+        let mut command = Command::new(env!("CARGO_BIN_EXE_luminaire"));
+        command.current_dir(folder.path()).env("VK_DRIVER_FILES", &nothing).env("VK_ICD_FILENAMES", &nothing);
+        command.args(["stability", "samples", "albedo", "--long", "--out", "out"]).stderr(Stdio::piped());
+        let mut job = command.spawn().unwrap();
+        // Its first line comes when it listens.
+        let mut said = BufReader::new(job.stderr.take().unwrap());
+        let mut line = String::new();
+        while !line.contains("1/2 ") {
+            assert!(said.read_line(&mut line).unwrap() > 0, "{line}");
+        }
+        let status = Command::new("sh").args(["-c", &format!("kill -s {signal} {}", job.id())]).status().unwrap();
+        assert!(status.success());
+        said.read_to_string(&mut line).unwrap();
+        assert_eq!(job.wait().unwrap().code(), Some(130), "{signal}: {line}");
+        assert!(line.contains("interrupted"), "{signal}: {line}");
+        let left = names(&folder.path().join("out"));
+        assert!(left.iter().all(|name| name.starts_with("samples") && !name.contains("tmp")), "{signal}: {left:?}");
+    }
 }
 
 /// A real sweep, without a Vulkan device: the reference alone, and the page says so.

@@ -136,7 +136,7 @@ fn options_of_the_error_that_mean_nothing() {
     folder.write("one.toml", "[render]\nspp = 1\n[[object]]\nmesh = \"good.obj\"\n");
     folder.fails(&["render", "one.toml", "--error-map", "e.png"], 2, &["--spp 2", "`spp = 1`"]);
     fails(&["--width", "16", "--pixel", "16,0", "--sample", "1"], "not on the film");
-    fails(&["--pixel", "1,1", "--sample", "1", "--spp", "4"], "cannot be used with");
+    fails(&["--pixel", "1,1", "--sample", "1", "-o", "a.png"], "cannot be used with");
     fails(&["--pixel", "1,1"], "--sample");
 }
 

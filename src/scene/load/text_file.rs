@@ -51,16 +51,27 @@ pub(super) fn shortened(word: &str) -> Cow<'_, str> {
 
 /// Reads a text file. A UTF-8 byte-order mark is dropped, and bytes that are not UTF-8 become U+FFFD: they sit in comments
 /// and names, where they do no harm. Lines may end as they do on any system, the first Macintoshes (a carriage return) included.
+/// NUL bytes at the end, which some programs write, are left out with a warning.
 ///
 /// # Errors
-/// As for [`read_bytes`], and if the file is UTF-16, or holds a NUL byte (then it is binary or damaged).
-pub(super) fn read_text(path: &Path) -> Result<String> {
+/// As for [`read_bytes`], and if the file is UTF-16, or holds a NUL byte before its last character (then it is binary or damaged).
+pub(super) fn read_text(path: &Path, warnings: &mut Vec<String>) -> Result<String> {
     let mut bytes = read_bytes(path)?;
     if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
         return Err(Error::read(path, "it is UTF-16 text; save it as UTF-8"));
     }
     if bytes.starts_with(&[0xef, 0xbb, 0xbf]) {
         bytes.drain(..3);
+    }
+    let kept = without_nuls_at_the_end(&bytes).len();
+    // A file of nothing else is damaged.
+    if kept > 0 && kept < bytes.len() {
+        let count = bytes[kept..].iter().filter(|byte| **byte == 0).count();
+        warnings.push(format!(
+            "{}: {count} NUL byte(s) at its end are ignored; if what wrote or copied it did not mean them, the end of the file is missing",
+            path.display()
+        ));
+        bytes.truncate(kept);
     }
     if bytes.contains(&0) {
         let line = 1 + bytes.iter().take_while(|b| **b != 0).filter(|b| **b == b'\n').count();
@@ -69,6 +80,13 @@ pub(super) fn read_text(path: &Path) -> Result<String> {
     }
     end_lines(&mut bytes);
     Ok(String::from_utf8(bytes).unwrap_or_else(|e| String::from_utf8_lossy(e.as_bytes()).into_owned()))
+}
+
+/// The bytes before the NUL bytes at the end, between and behind which there may be blanks and line ends.
+fn without_nuls_at_the_end(bytes: &[u8]) -> &[u8] {
+    let text = bytes.iter().rposition(|byte| *byte != 0 && !byte.is_ascii_whitespace()).map_or(0, |last| last + 1);
+    let first = bytes[text..].iter().position(|byte| *byte == 0);
+    &bytes[..first.map_or(bytes.len(), |first| text + first)]
 }
 
 /// Makes a line feed of every carriage return that has none behind it.

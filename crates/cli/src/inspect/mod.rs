@@ -64,7 +64,7 @@ pub fn run(options: &Options) -> Result<ExitCode> {
 
 /// The whole report on a scene.
 fn describe(scene: &Scene) -> String {
-    let (low, high) = scene.world_bounds();
+    let (low, high) = scene.tight_bounds();
     let (low, high) = (low + scene.origin, high + scene.origin);
     let stored: usize = scene.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
     let mut text = format!("{}\n\n", scene.path.display());

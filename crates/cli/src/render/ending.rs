@@ -92,7 +92,10 @@ fn losses(rendered: &Rendered, scene: &Scene) -> Option<String> {
         "; the driver ended the kernel before its time: use another driver, or --backend cpu".into(),
         |first| {
             let (x, y) = (first.pixel % scene.film.width, first.pixel / scene.film.width);
-            format!("; with the same options, --pixel {x},{y} --sample {} replays one", first.sample)
+            format!(
+                "; with the same options but those that name files, --pixel {x},{y} --sample {} replays one",
+                first.sample
+            )
         },
     );
     Some(format!(

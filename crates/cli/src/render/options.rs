@@ -29,19 +29,7 @@ Examples:
 pub const LARGEST_SIDE: u32 = 65536;
 
 /// Options that mean nothing where nothing is rendered.
-const REPLAY_CONFLICTS: [&str; 11] = [
-    "output",
-    "error_map",
-    "aov",
-    "stats",
-    "spp",
-    "time",
-    "noise",
-    "samples",
-    "checkpoint",
-    "checkpoint_every",
-    "resume",
-];
+const REPLAY_CONFLICTS: [&str; 7] = ["output", "error_map", "aov", "stats", "checkpoint", "checkpoint_every", "resume"];
 
 /// What to render, and how.
 #[derive(Debug, clap::Args)]
@@ -111,7 +99,8 @@ pub struct Options {
     #[arg(long, requires = "checkpoint", help_heading = "Long renders")]
     pub resume: bool,
 
-    /// Trace one sample of one pixel again and print its path, instead of rendering; with --sample.
+    /// Trace one sample of one pixel again and print its path, instead of rendering; with --sample. What ends a render (--spp, --samples, ...) changes
+    /// nothing about it.
     #[arg(long, value_name = "X,Y", value_parser = pixel, requires = "sample", conflicts_with_all = REPLAY_CONFLICTS, help_heading = "Replay")]
     pub pixel: Option<Pixel>,
     /// The number of the sample that --pixel traces.

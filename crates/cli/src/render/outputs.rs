@@ -20,7 +20,7 @@ pub fn is_exr(path: &Path) -> bool {
 
 /// Refuses `--samples` and `--aov` where no output is an EXR file, the only format that holds a part or layers.
 pub fn check_layers(options: &Options) -> Result<()> {
-    if options.samples.is_some() && !options.output.iter().any(|path| is_exr(path)) {
+    if options.samples.is_some() && options.pixel.is_none() && !options.output.iter().any(|path| is_exr(path)) {
         return Err(Error::Usage(
             "--samples renders a part, which only an EXR file holds: say which with -o PART.exr".into(),
         ));

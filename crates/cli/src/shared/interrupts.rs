@@ -4,7 +4,7 @@ use crate::shared::exit_codes::INTERRUPTED;
 use crate::shared::printing::Notes;
 use luminaire::{Error, Result, files};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, TryLockError};
+use std::sync::{Mutex, OnceLock, TryLockError};
 
 /// Set by the first interrupt of a render: it ends at the next batch.
 pub static STOP: AtomicBool = AtomicBool::new(false);
@@ -14,6 +14,9 @@ static RENDERING: AtomicBool = AtomicBool::new(false);
 
 /// True once the checkpoint holds what this run has rendered, or the most of it.
 static SAVED: AtomicBool = AtomicBool::new(false);
+
+/// Said by an interrupt in the place of that nothing is written, once something is.
+static WRITTEN: OnceLock<&str> = OnceLock::new();
 
 /// Held while files are written, which an exit would leave half done beside their targets; and by an exit, so that none is begun.
 static WRITING: Mutex<()> = Mutex::new(());
@@ -30,7 +33,7 @@ pub fn listen(notes: Notes) -> Result<()> {
             notes.note(if SAVED.load(Ordering::SeqCst) {
                 "interrupted; no picture is written, but the checkpoint is saved: the same command with --resume goes on from it"
             } else {
-                "interrupted; nothing is written"
+                WRITTEN.get().unwrap_or(&"interrupted; nothing is written")
             });
             exit_now();
         } else if !again {
@@ -52,6 +55,11 @@ pub fn render_begins() {
 /// The checkpoint is complete: an interrupt that ends the process at once costs only what came after.
 pub fn saved() {
     SAVED.store(true, Ordering::SeqCst);
+}
+
+/// Some of the files are complete: what an interrupt says from now on. The first one counts.
+pub fn written(saying: &'static str) {
+    WRITTEN.get_or_init(|| saying);
 }
 
 /// Runs `write`, which writes files; interrupts end nothing meanwhile.

@@ -29,7 +29,7 @@ const MOST_IGNORED: usize = 32;
 /// # Errors
 /// Only if the file cannot be read at all.
 pub(super) fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Vec<Draft>> {
-    let text = read_text(path)?;
+    let text = read_text(path, warnings)?;
     let mut reader = Reader {
         path,
         warnings,

@@ -13,7 +13,7 @@ const MOST_WORDS: usize = 64;
 /// Every image that the file names and that is there, also those of materials that nothing shows and of maps that nothing models: whoever writes over one of them
 /// harms the model. None if the file cannot be read, of which its reader warns.
 pub(in crate::scene::load) fn named_files(path: &Path) -> Vec<PathBuf> {
-    let Ok(text) = read_text(path) else { return Vec::new() };
+    let Ok(text) = read_text(path, &mut Vec::new()) else { return Vec::new() };
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut files = Vec::new();
     for (_, line) in logical_lines(&text) {

@@ -144,7 +144,7 @@ impl Colours {
             _ => return 1.0,
         };
         warnings.push(format!(
-            "{}: vertex colours reach {most}; they are taken as numbers from 0 to {scale}",
+            "{}: vertex colours reach {most}; they are taken as numbers from 0 to {scale}: if 1 was to be full intensity, divide them so that none is larger",
             path.display()
         ));
         scale
@@ -174,6 +174,17 @@ mod tests {
         assert!((colours[0].z - 0.003_035_27).abs() < 1e-7 && colours[0].x == 1.0, "{colours:?}");
         assert!(warnings[0].contains("0 to 255"), "{warnings:?}");
         assert!(resolved(&[&[1.0, 1.0, 1.0]]).0.is_empty(), "all white is nothing");
+        // Whatever is guessed of numbers above 1 is said.
+        for (most, guess) in [
+            (2.0, "from 0 to 255"),
+            (3.5, "from 0 to 255"),
+            (300.0, "from 0 to 65535"),
+            (1.5, "outside"),
+            (1e6, "outside"),
+        ] {
+            let warnings = resolved(&[&[most, 0.0, 1.0]]).1;
+            assert!(warnings.len() == 1 && warnings[0].contains(guess), "{most}: {warnings:?}");
+        }
         let (colours, warnings) = resolved(&[&[1.5, 0.25, -1.0]]);
         assert!(colours[0].x == 1.0 && colours[0].z == 0.0 && warnings[0].contains("1 vertex colour"), "{warnings:?}");
     }

@@ -48,8 +48,8 @@ pub(super) struct Reading {
 /// If the file cannot be read, a line of it is wrong, or no triangle is left.
 pub(super) fn read(path: &Path, how: Reading) -> Result<Obj> {
     // The text itself is given up here: what follows takes as much memory again.
-    let mut text = statements::read(path, &read_text(path)?)?;
     let mut warnings = Vec::new();
+    let mut text = statements::read(path, &read_text(path, &mut warnings)?)?;
     let smooth = how.smooth.map(f32::from_bits);
     let has_normals = text.faces.corners.iter().any(|[_, _, normal]| *normal > 0);
     if smooth.is_some() && has_normals {
