@@ -290,7 +290,11 @@ fn parts_that_do_not_close_a_body_are_named_once() {
 #[test]
 fn bodies_that_reach_through_each_other_are_named_once() {
     let cube = unit() + &written(&faces(1));
-    let two = |place: &str| parts(&[("a", &cube, ""), ("b", &cube, place)], "");
+    // What touches is drawn apart, which is another warning.
+    let parts = |objects: &[(&str, &str, &str)]| {
+        parts(objects, "").into_iter().filter(|w| !w.contains("drawn in there by a hair")).collect::<Vec<_>>()
+    };
+    let two = |place: &str| parts(&[("a", &cube, ""), ("b", &cube, place)]);
     let said = |warnings: &[String], words: &[&str]| {
         assert!(warnings.len() == 1 && words.iter().all(|word| warnings[0].contains(word)), "{warnings:?}");
     };
@@ -309,17 +313,17 @@ fn bodies_that_reach_through_each_other_are_named_once() {
         said(&two(place), &[of_both, "1.500 times 1.500"]);
     }
     let bars = [("a", &*cube, "scale = [8, 0.2, 0.2]"), ("b", &*cube, "scale = [8, 0.2, 0.2]\nrotate = [0, 10, 40]")];
-    said(&parts(&bars, ""), &["reach through"]);
+    said(&parts(&bars), &["reach through"]);
     // In one mesh; of two materials; several pairs.
     let shifted = corners([0.5; 3], [1.5; 3]) + "usemtl water\n" + &written(&faces(9));
     named(&(unit() + &written(&faces(1)) + &shifted), &["two bodies of glass (`g`, `water`)", "1.500 times 1.330"]);
     let places = ["", "translate = [0.5, 0.3, 0.3]", "translate = [0.3, 0.6, 0.6]"];
     let three = [("a", &*cube, places[0]), ("b", &cube, places[1]), ("c", &cube, places[2])];
-    said(&parts(&three, ""), &["(and 2 more pairs)"]);
+    said(&parts(&three), &["(and 2 more pairs)"]);
     // A part of a body that several objects close.
     let (open, lid) = box_and_lid();
     let water = "material = \"water\"\ntranslate = [0.5, 0.3, 0.3]";
-    said(&parts(&[("box", &open, ""), ("lid", &lid, ""), ("water", &cube, water)], ""), &["`water`", "1.330"]);
+    said(&parts(&[("box", &open, ""), ("lid", &lid, ""), ("water", &cube, water)]), &["`water`", "1.330"]);
     // The same body in another file, in the same place.
     said(&two(""), &["objects `a`, `b`", "lie on each other"]);
     said(&two("scale = [-1, 1, 1]\ntranslate = [1, 0, 0]"), &["lie on each other"]);
@@ -339,6 +343,11 @@ fn bodies_that_reach_through_each_other_are_named_once() {
     ] {
         assert_eq!(two(place), none, "{place}");
     }
+    // A part of a side in common, but for the rounding of what was made in other units and is turned.
+    let turned = "rotate = [17, 31, 47]\nscale = 0.37\ntranslate = [3.3, 2.7, -5.1]";
+    let large = corners([1000.0, 200.0, 100.0], [2000.0, 700.0, 900.0]) + &written(&faces(1));
+    let of_large = turned.replace("0.37", "0.00037");
+    assert_eq!(parts(&[("a", &cube, turned), ("b", &large, &of_large)]), none);
     // Their boxes overlap, and they do not: one stands on its corner beside the other.
     let beside = "rotate = [0, 0, 45]\ntranslate = [1.1, 0.95, 0]";
     assert_eq!(two(beside), none);
@@ -347,9 +356,9 @@ fn bodies_that_reach_through_each_other_are_named_once() {
     let within = "scale = [0.6, 0.6, 0.6]\ntranslate = [0.2, 0.2, 0.2]";
     let glass = [("outer", &*cube, ""), ("inner", &*hollow, within)];
     let water = format!("material = \"water\"\n{within}");
-    assert_eq!(parts(&[glass[0], glass[1], ("water", &fill, &water)], ""), none);
+    assert_eq!(parts(&[glass[0], glass[1], ("water", &fill, &water)]), none);
     let wide = "material = \"water\"\nscale = [0.7, 0.3, 0.7]\ntranslate = [0.15, 0.3, 0.15]";
-    said(&parts(&[glass[0], glass[1], ("water", &fill, wide)], ""), &["`inner`, `water`", "1.500 times 1.330"]);
+    said(&parts(&[glass[0], glass[1], ("water", &fill, wide)]), &["`inner`, `water`", "1.500 times 1.330"]);
 }
 
 #[test]

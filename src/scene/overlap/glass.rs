@@ -23,7 +23,6 @@ struct Report {
     bodies: Found,
     panes: Found,
     stuck: Found,
-    doubled: Found,
     panes_in_one_place: Found,
 }
 
@@ -136,11 +135,10 @@ impl Parter<'_> {
         touching.sort_unstable_by_key(|(later, earlier, _)| (*later, *earlier));
         for (later, earlier, relation) in touching {
             let surface = doubled.contains(&later) && doubled.contains(&earlier);
-            if self.may_be_one(later, earlier)
-                && (surface || relation == Relation::Same && self.same_way(later, earlier))
-            {
-                self.on_itself(later, earlier);
-            } else {
+            // What becomes of a body that is there twice: nothing. The check of bodies says so.
+            let twice = self.may_be_one(later, earlier)
+                && (surface || relation == Relation::Same && self.same_way(later, earlier));
+            if !twice {
                 self.on_glass(later, earlier);
             }
         }
@@ -162,14 +160,6 @@ impl Parter<'_> {
     fn leave(&mut self, kind: impl Fn(&mut Report) -> &mut Found, index: usize) {
         if self.told.insert(index) {
             kind(&mut self.report).add(1, || self.faces[index].describe(self.scene));
-        }
-    }
-
-    /// What becomes of a face that is there twice: nothing. Where one mesh has both, or both objects show one, the check of bodies says so.
-    fn on_itself(&mut self, later: usize, earlier: usize) {
-        let mesh = |index: usize| self.scene.objects[self.faces[index].object as usize].mesh;
-        if mesh(later) != mesh(earlier) {
-            self.leave(|report| &mut report.doubled, later);
         }
     }
 
@@ -247,10 +237,6 @@ impl Report {
             (
                 &self.stuck,
                 "of glass lie in the plane of others that they touch, and are left as they are, since to move them by what single precision tells apart there would show: their bodies are too thin, too far from the origin, or too small beside what they touch; which of the two is met first is left to rounding; leave a gap",
-            ),
-            (
-                &self.doubled,
-                "of glass lie on others of the same material that face the same way; light would enter the same body twice: remove one",
             ),
             (
                 &self.panes_in_one_place,
