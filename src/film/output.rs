@@ -3,19 +3,20 @@
 use super::{Aovs, ErrorEstimate, Film};
 use crate::Result;
 use crate::files::write_file_atomically;
-use crate::picture::{Attribute, Exr, Format, Values, save_linear};
+use crate::picture::{Attribute, Development, Exr, Format, Values, save_linear};
 use std::fs::File;
 use std::path::Path;
 
 impl Film {
-    /// Writes the picture to `path` in the format of its ending. `exposure` is in stops and changes a PNG only.
+    /// Writes the picture to `path` in the format of its ending. `how` is an exposure in stops, or a whole
+    /// [`Development`], and changes a PNG only.
     ///
     /// # Errors
     /// [`Error::Usage`](crate::Error::Usage) for an unknown ending, [`Error::Write`](crate::Error::Write) if the system refuses; then nothing has changed at `path`.
-    pub fn save(&self, path: &Path, exposure: f32) -> Result<()> {
+    pub fn save(&self, path: &Path, how: impl Into<Development>) -> Result<()> {
         match Format::of(path)? {
             Format::Exr => self.save_exr(path, vec![], vec![], |_| Ok(())),
-            Format::Png | Format::Hdr => save_linear(path, self.width, self.height, &self.to_linear(), exposure),
+            Format::Png | Format::Hdr => save_linear(path, self.width, self.height, &self.to_linear(), how),
         }
     }
 

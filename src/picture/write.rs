@@ -1,22 +1,23 @@
 //! Pictures to disk: PNG to look at, EXR and HDR to compute with.
 
-use super::Format;
 use super::openexr::Exr;
-use super::srgb::to_srgb8;
+use super::{Development, Format, to_srgb8};
 use crate::Result;
 use crate::files::write_atomically;
 use image::{ExtendedColorType, ImageEncoder, ImageError, ImageResult};
 use std::io::Write;
 use std::path::Path;
 
-/// Writes linear RGB, row by row from the top, to `path` in the format of its ending. `exposure` is in stops and changes a PNG only.
+/// Writes linear RGB, row by row from the top, to `path` in the format of its ending. `how` is an exposure in stops, or
+/// a whole [`Development`], and changes a PNG only.
 ///
 /// # Errors
 /// [`Error::Usage`](crate::Error::Usage) for an unknown ending, [`Error::Write`](crate::Error::Write) if the system refuses; then nothing has changed at `path`.
-pub fn save_linear(path: &Path, width: u32, height: u32, linear: &[f32], exposure: f32) -> Result<()> {
+pub fn save_linear(path: &Path, width: u32, height: u32, linear: &[f32], how: impl Into<Development>) -> Result<()> {
+    let how = how.into();
     let format = Format::of(path)?;
     write_atomically(path, |out| match format {
-        Format::Png => write_png(out, width, height, &to_srgb8(linear, exposure)),
+        Format::Png => write_png(out, width, height, &to_srgb8(linear, how)),
         Format::Exr => {
             let exr =
                 Exr { width, height, rgb: bytemuck::cast_slice(linear), error: None, more: vec![], attributes: &[] };

@@ -111,11 +111,11 @@ fn pixels_without_samples(rendered: &Rendered, written: &[PathBuf]) -> Option<St
 /// A picture that is black, or that a PNG of it would show so.
 fn black(outcome: &Outcome, written: &[PathBuf]) -> Option<String> {
     let Outcome { rendered, scene, .. } = outcome;
-    let dark = outcome.lacks_light || scene.dark_because().is_some();
+    let dark = outcome.foreseen.lacks_light || scene.dark_because().is_some();
     let is_png = |path: &PathBuf| matches!(Format::of(path), Ok(Format::Png));
     error_line::black_picture(&rendered.film, dark).or_else(|| {
         let shown = written.iter().any(is_png);
-        shown.then(|| error_line::black_at_exposure(&rendered.film, scene.settings.exposure)).flatten()
+        shown.then(|| error_line::black_when_developed(&rendered.film, outcome.foreseen.development)).flatten()
     })
 }
 

@@ -24,14 +24,15 @@ use self::progress::Reporter;
 use self::seconds::Seconds;
 use crate::shared::backend_name;
 use crate::shared::film_size::FilmSize;
-use crate::shared::foreseen::warn_of_the_picture;
+use crate::shared::foreseen::{Foreseen, foresee};
 use crate::shared::interrupts;
 use crate::shared::outputs::Outputs;
 use crate::shared::printing::Notes;
+use crate::shared::tone_name::ToneName;
 use crate::shared::values::Pixel;
 use luminaire::backend::{self, Renderer, Request};
 use luminaire::render::{End, Limits, Rendered, aovs, resume};
-use luminaire::scene::{self, FilmSettings, Scene};
+use luminaire::scene::{self, Exposure, FilmSettings, Scene};
 use luminaire::{Error, Result};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -61,11 +62,13 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     let mut scene = scene::load(&options.scene)?;
     seconds.load = start.elapsed().as_secs_f64();
     outputs.check(scene.files.iter().map(|path| ("a file of the scene", &**path)))?;
+    let own_film = scene.film;
     change(&mut scene, options)?;
-    let lacks_light = warn_of_the_picture(&mut scene);
+    let foreseen = foresee(&mut scene, &own_film);
     scene.warnings.iter().for_each(|warning| notes.warn(warning));
+    foreseen.found.iter().for_each(|found| notes.note(found));
 
-    let render = || trace(options, &scene, lacks_light, &request, seconds, &pictures, notes);
+    let render = || trace(options, &scene, &foreseen, &request, seconds, &pictures, notes);
     #[cfg(feature = "shaderc")]
     if options.watch {
         return watch::repeat(&interrupts::STOP, &render);
@@ -81,6 +84,11 @@ fn change(scene: &mut Scene, options: &Options) -> Result<()> {
     options.estimator.apply(scene)?;
     scene.settings.seed = options.seed.unwrap_or(scene.settings.seed);
     scene.settings.exposure = options.exposure.unwrap_or(scene.settings.exposure);
+    scene.settings.tone = options.tone.map_or(scene.settings.tone, ToneName::tone);
+    if options.pixel.is_some() {
+        // Nothing is shown.
+        scene.settings.exposure = Exposure::Stops(0.0);
+    }
     let FilmSettings { width, height, .. } = scene.film;
     outputs::demand(options, &scene.film).check()?;
     outputs::check_error_map(options, limits(options, scene).spp, " (the scene says `spp = 1`)")?;
@@ -96,7 +104,7 @@ fn change(scene: &mut Scene, options: &Options) -> Result<()> {
 fn trace(
     options: &Options,
     scene: &Scene,
-    lacks_light: bool,
+    foreseen: &Foreseen,
     request: &Request,
     mut seconds: Seconds,
     pictures: &[PathBuf],
@@ -158,7 +166,7 @@ fn trace(
         rendered,
         aovs: layers,
         saved,
-        lacks_light,
+        foreseen,
         warnings: vec![],
         seconds,
     };

@@ -4,7 +4,9 @@ use crate::shared::backend_name::BackendName;
 use crate::shared::counts::{pixels, samples, seed};
 use crate::shared::estimator::EstimatorOptions;
 use crate::shared::exit_codes::EXIT_CODES;
-use crate::shared::values::{Pixel, noise, pixel, range, seconds, stops};
+use crate::shared::tone_name::{ToneName, exposure};
+use crate::shared::values::{Pixel, noise, pixel, range, seconds};
+use luminaire::scene::Exposure;
 use std::ops::Range;
 use std::path::PathBuf;
 
@@ -14,6 +16,8 @@ Examples:
       cornell.png in the current folder, with what the scene file says
   luminaire render model.obj -o out/model.png -o out/model.exr --width 1920 --spp 256
       two files of one render; the height follows from the scene's aspect ratio
+  luminaire render model.obj --exposure auto --tone agx
+      as bright as its surfaces want it, and with soft highlights, as film has them
   luminaire render model.obj --time 30 --backend compute-bvh --stats run.json
       as many samples as 30 seconds allow, and the figures of the run
   luminaire render model.obj --noise 0.02 --time 600 --error-map noise.png
@@ -53,9 +57,13 @@ pub struct Options {
     /// A file to write; .png, .exr or .hdr says the format. May be given several times [default: <SCENE>.png here].
     #[arg(short, long, value_name = "FILE", help_heading = "Output")]
     pub output: Vec<PathBuf>,
-    /// Exposure of a PNG in stops: radiance times 2^STOPS [default: the scene's].
-    #[arg(long, value_name = "STOPS", allow_negative_numbers = true, value_parser = stops, help_heading = "Output")]
-    pub exposure: Option<f32>,
+    /// Exposure of a PNG in stops: radiance times 2^STOPS; `auto` finds one from the scene, the same at every size and on every backend
+    /// [default: the scene's].
+    #[arg(long, value_name = "STOPS|auto", allow_negative_numbers = true, value_parser = exposure, help_heading = "Output")]
+    pub exposure: Option<Exposure>,
+    /// Tone curve of a PNG, after the exposure [default: the scene's].
+    #[arg(long, value_name = "NAME", help_heading = "Output")]
+    pub tone: Option<ToneName>,
     /// Write a heat map of the estimated relative error of every pixel.
     #[arg(long, value_name = "FILE.png", help_heading = "Output")]
     pub error_map: Option<PathBuf>,
@@ -170,6 +178,8 @@ mod tests {
             ["--height", "65537"],
             ["--seed", "-1"],
             ["--exposure", "nan"],
+            ["--exposure", "automatic"],
+            ["--tone", "filmic"],
             ["--integrator", "path"],
             ["--estimator", "photon"],
             ["--light-sampling", "some"],
@@ -183,9 +193,15 @@ mod tests {
         ] {
             assert_eq!(render(&bad).unwrap_err(), 2, "{bad:?}");
         }
-        for good in
-            [["--spp", "4294967295"], ["--time", "0.5"], ["--exposure", "-2"], ["--noise", "1"], ["--max-bounces", "0"]]
-        {
+        for good in [
+            ["--spp", "4294967295"],
+            ["--time", "0.5"],
+            ["--exposure", "-2"],
+            ["--exposure", "auto"],
+            ["--tone", "agx"],
+            ["--noise", "1"],
+            ["--max-bounces", "0"],
+        ] {
             assert!(render(&good).is_ok(), "{good:?}");
         }
     }

@@ -124,11 +124,12 @@ pub fn write(outcome: &mut Outcome, pictures: &[PathBuf]) -> Result<()> {
 /// Writes the pictures, the error map and the denoised picture.
 fn write_pictures(outcome: &Outcome, pictures: &[PathBuf]) -> Result<()> {
     let Outcome { options, scene, rendered, .. } = outcome;
+    let development = outcome.foreseen.development;
     let provenance = options.samples.as_ref().map(|_| Provenance::of(scene));
     let save = |path: &PathBuf| match (&provenance, &outcome.aovs, picture::Format::of(path)?) {
         (Some(provenance), _, picture::Format::Exr) => part::save(path, rendered, provenance),
         (_, Some(aovs), picture::Format::Exr) if options.aov => rendered.film.save_with_aovs(path, aovs),
-        _ => rendered.film.save(path, scene.settings.exposure),
+        _ => rendered.film.save(path, development),
     };
     // All are tried before an error is returned: if one cannot be written, the others still are.
     let saved: Vec<_> = pictures.iter().map(save).collect();
@@ -141,7 +142,7 @@ fn write_pictures(outcome: &Outcome, pictures: &[PathBuf]) -> Result<()> {
     #[cfg(feature = "denoise")]
     if let (Some(path), Some(aovs)) = (&options.denoised, &outcome.aovs) {
         let picture = luminaire::denoise::denoise(&rendered.film, aovs)?;
-        picture::save_linear(path, width, height, &picture, scene.settings.exposure)?;
+        picture::save_linear(path, width, height, &picture, development)?;
     }
     Ok(())
 }
