@@ -108,6 +108,13 @@ impl Provenance {
         Development { exposure: self.exposure, tone: self.tone }
     }
 
+    /// A digest of all that the samples depend on, and of `more`.
+    pub fn digest(&self, more: &str) -> String {
+        let Provenance { version, scene: _, width, height, seed, sampler, integrator, digests, exposure: _, tone: _ } =
+            self;
+        digest(|hash| write(hash, &(version, width, height, seed, sampler, integrator, digests, more)))
+    }
+
     /// In what a render differs from another, of which this is the provenance; empty if their samples belong to one picture.
     pub fn differences(&self, other: &Provenance) -> Vec<String> {
         let mut found = Vec::new();

@@ -64,8 +64,8 @@ const OPTIONS: &[(&[&str], &str)] = &[
         "that is --noise, for example --noise 0.02 for 2 %",
     ),
     (
-        &["frame", "frames", "animation", "a", "start", "end"],
-        "a scene is one picture; an animation is a scene file for each of its pictures",
+        &["frame", "frames", "animation", "a", "start", "end", "turn", "orbit", "spin", "rotate", "fps"],
+        "a turn around the scene is --turntable N, of which --frames A..B is a part; any other animation is a scene file for each of its pictures",
     ),
     (&["crop", "region", "border", "window"], "the whole film is rendered; a part of the samples is --samples A..B"),
     (

@@ -22,15 +22,7 @@ pub fn finish(mut outcome: Outcome, pictures: &[PathBuf], notes: Notes) -> Resul
     // An unfinished part is not written where the checkpoint holds it: somebody might take the file for the whole part.
     let nothing = rendered.progress.samples == 0 || unfinished_part && outcome.saved.is_some();
     let written = if nothing { &[] } else { pictures };
-    outcome.warnings = [
-        losses(rendered, outcome.scene),
-        pixels_without_samples(rendered, written),
-        black(&outcome, written),
-        reached_without_fireflies(rendered),
-    ]
-    .into_iter()
-    .flatten()
-    .collect();
+    outcome.warnings = warnings(&outcome, written);
     outcome.warnings.iter().for_each(|warning| notes.warn(warning));
 
     let done = interrupts::hold_off(|| outputs::write(&mut outcome, written));
@@ -81,6 +73,18 @@ pub fn finish(mut outcome: Outcome, pictures: &[PathBuf], notes: Notes) -> Resul
             Ok(ExitCode::from(DEVICE_FAILED))
         }
     }
+}
+
+/// What there is to warn of a picture that is written to these files.
+pub fn warnings(outcome: &Outcome, written: &[PathBuf]) -> Vec<String> {
+    let rendered = &outcome.rendered;
+    let all = [
+        losses(rendered, outcome.scene),
+        pixels_without_samples(rendered, written),
+        black(outcome, written),
+        reached_without_fireflies(rendered),
+    ];
+    all.into_iter().flatten().collect()
 }
 
 /// Samples that are left out, and how one of them can be replayed.

@@ -3,12 +3,14 @@
 mod checkpoint;
 mod ending;
 mod failing_tracer;
+mod frame_name;
 mod options;
 mod outcome;
 mod outputs;
 mod progress;
 mod replay;
 mod seconds;
+mod sequence;
 mod stats;
 mod summary;
 #[cfg(feature = "shaderc")]
@@ -22,6 +24,7 @@ use self::options::LARGEST_SIDE;
 use self::outcome::Outcome;
 use self::progress::Reporter;
 use self::seconds::Seconds;
+use self::sequence::Sequence;
 use crate::shared::backend_name;
 use crate::shared::film_size::FilmSize;
 use crate::shared::foreseen::{Foreseen, foresee};
@@ -31,7 +34,8 @@ use crate::shared::printing::Notes;
 use crate::shared::tone_name::ToneName;
 use crate::shared::values::Pixel;
 use luminaire::backend::{self, Renderer, Request};
-use luminaire::render::{End, Limits, Rendered, aovs, resume};
+use luminaire::film::Aovs;
+use luminaire::render::{End, Limits, Rendered, Tracer, aovs, resume};
 use luminaire::scene::{self, Exposure, FilmSettings, Scene};
 use luminaire::{Error, Result};
 use std::path::PathBuf;
@@ -46,11 +50,17 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     options.estimator.check()?;
     let mut outputs = Outputs::default();
     let mut pictures = vec![];
+    let mut sequence = None;
     let mut locks = vec![];
     // Before locks are taken, which an interrupt would leave.
     interrupts::listen(notes)?;
     if options.pixel.is_none() {
-        pictures = outputs::pictures(options, &mut outputs)?;
+        if let Some(frames) = options.turntable {
+            sequence::check(options, frames)?;
+            sequence = Some(Sequence::of(options, frames, &mut outputs)?);
+        } else {
+            pictures = outputs::pictures(options, &mut outputs)?;
+        }
         outputs::declare_others(options, &mut outputs)?;
         checkpoint::declare(options, &mut outputs)?;
         locks = checkpoint::lock(options, notes)?;
@@ -68,6 +78,9 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     scene.warnings.iter().for_each(|warning| notes.warn(warning));
     foreseen.found.iter().for_each(|found| notes.note(found));
 
+    if let Some(sequence) = &sequence {
+        return sequence::run(sequence, options, &scene, &foreseen, &request, seconds, notes);
+    }
     let render = || trace(options, &scene, &foreseen, &request, seconds, &pictures, notes);
     #[cfg(feature = "shaderc")]
     if options.watch {
@@ -147,16 +160,7 @@ fn trace(
     let checkpoint = checkpoint.filter(|_| rendered.progress.samples > 0);
     let saved = checkpoint.map(|checkpoint| checkpoint.save(&rendered));
     // Not after a failure, for the device would fail again, nor after an interrupt, which should end the run soon.
-    let mut layers = None;
-    if options.wants_aovs() && !matches!(rendered.end, End::Failed(_) | End::Stopped) {
-        let size = (rendered.film.width, rendered.film.height);
-        match aovs(&mut tracer, size, rendered.film.most_samples(), &interrupts::STOP) {
-            // Samples are complete then, and the files are written without layers.
-            Ok(None) => rendered.end = End::Stopped,
-            Ok(found) => layers = found,
-            Err(error) => rendered.end = End::Failed(error),
-        }
-    }
+    let layers = layers(options, &mut rendered, &mut tracer);
     seconds.render = rendered.progress.seconds;
     seconds.device = rendered.device_seconds;
     let outcome = Outcome {
@@ -171,6 +175,21 @@ fn trace(
         seconds,
     };
     ending::finish(outcome, pictures, notes)
+}
+
+/// What the camera sees first, where a file is to hold it and the render has come to its end; an interrupt or a failure meanwhile is the render's.
+fn layers(options: &Options, rendered: &mut Rendered, tracer: &mut dyn Tracer) -> Option<Aovs> {
+    if !options.wants_aovs() || matches!(rendered.end, End::Failed(_) | End::Stopped) {
+        return None;
+    }
+    let size = (rendered.film.width, rendered.film.height);
+    match aovs(tracer, size, rendered.film.most_samples(), &interrupts::STOP) {
+        // Samples are complete then, and the files are written without layers.
+        Ok(None) => rendered.end = End::Stopped,
+        Ok(found) => return found,
+        Err(error) => rendered.end = End::Failed(error),
+    }
+    None
 }
 
 /// Notes which backend renders on which device, and why.

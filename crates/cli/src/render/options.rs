@@ -5,7 +5,7 @@ use crate::shared::counts::{pixels, samples, seed};
 use crate::shared::estimator::EstimatorOptions;
 use crate::shared::exit_codes::EXIT_CODES;
 use crate::shared::tone_name::{ToneName, exposure};
-use crate::shared::values::{Pixel, noise, pixel, range, seconds};
+use crate::shared::values::{Pixel, frames, noise, pixel, range, seconds, turntable};
 use luminaire::scene::Exposure;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -26,6 +26,8 @@ Examples:
       goes on where it was, however it ended; the same command again after Ctrl-C, a crash or a power cut
   luminaire render model.obj --samples 1024..2048 -o part-1.exr
       one part of four, on one machine of four; `luminaire merge part-*.exr -o model.exr` joins them
+  luminaire render model.obj --turntable 120 -o frame-%04d.png
+      a turn around the model: frame-0000.png to frame-0119.png; the same command again keeps those that are finished
 
 ";
 
@@ -33,7 +35,7 @@ Examples:
 pub const LARGEST_SIDE: u32 = 65536;
 
 /// Options that mean nothing where nothing is rendered.
-const REPLAY_CONFLICTS: [&str; 11] = [
+const REPLAY_CONFLICTS: [&str; 12] = [
     "output",
     "error_map",
     "aov",
@@ -45,6 +47,7 @@ const REPLAY_CONFLICTS: [&str; 11] = [
     "checkpoint",
     "checkpoint_every",
     "resume",
+    "turntable",
 ];
 
 /// What to render, and how.
@@ -119,6 +122,14 @@ pub struct Options {
     #[arg(long, requires = "checkpoint", help_heading = "Long renders")]
     pub resume: bool,
 
+    /// Render N pictures of the camera turning once around the vertical axis through its target, counter-clockwise as seen from above; the first
+    /// one is the scene's own. -o frame-%04d.png says where their numbers stand. Pictures that are finished are kept by the same command.
+    #[arg(long, value_name = "N", value_parser = turntable, help_heading = "Sequences")]
+    pub turntable: Option<u32>,
+    /// Render only frames A to B - 1 of the turn, as one of several machines.
+    #[arg(long, value_name = "A..B", value_parser = frames, requires = "turntable", help_heading = "Sequences")]
+    pub frames: Option<Range<u32>>,
+
     /// Trace one sample of one pixel again and print its path, instead of rendering; with --sample.
     #[arg(long, value_name = "X,Y", value_parser = pixel, requires = "sample", conflicts_with_all = REPLAY_CONFLICTS, help_heading = "Replay")]
     pub pixel: Option<Pixel>,
@@ -189,6 +200,9 @@ mod tests {
             ["--albedo-threshold", "1.5"],
             ["--sampler", "some"],
             ["--backend", "gpu"],
+            ["--turntable", "0"],
+            ["--turntable", "10001"],
+            ["--frames", "0..1"],
             ["--max-bounces", "1000001"],
         ] {
             assert_eq!(render(&bad).unwrap_err(), 2, "{bad:?}");
@@ -199,6 +213,7 @@ mod tests {
             ["--exposure", "-2"],
             ["--exposure", "auto"],
             ["--tone", "agx"],
+            ["--turntable", "120"],
             ["--noise", "1"],
             ["--max-bounces", "0"],
         ] {

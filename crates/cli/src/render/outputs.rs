@@ -10,6 +10,7 @@ use luminaire::part::Provenance;
 use luminaire::scene::FilmSettings;
 use luminaire::{Error, Result, files, part, picture};
 use luminaire_measure::heat_map;
+use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -114,11 +115,25 @@ pub fn write(outcome: &mut Outcome, pictures: &[PathBuf]) -> Result<()> {
     }
     outcome.seconds.write = start.elapsed().as_secs_f64();
     if let Some(path) = &outcome.options.stats {
-        let stats = Stats::new(outcome, pictures);
-        let text = serde_json::to_string_pretty(&stats).map_err(|e| Error::write(path, e))?;
-        files::save_text(path, &(text + "\n"))?;
+        save_stats(path, &Stats::new(outcome, pictures))?;
     }
     Ok(())
+}
+
+/// Writes the pictures of a frame, each with the mark of its format.
+pub fn write_frame(outcome: &Outcome, pictures: &[PathBuf], mark: impl Fn(picture::Format) -> String) -> Result<()> {
+    for path in pictures {
+        let aovs = outcome.aovs.as_ref().filter(|_| outcome.options.aov);
+        let mark = mark(picture::Format::of(path)?);
+        outcome.rendered.film.save_marked(path, outcome.foreseen.development, aovs, &mark)?;
+    }
+    Ok(())
+}
+
+/// Saves the figures of a run as JSON.
+pub fn save_stats(path: &Path, figures: &impl Serialize) -> Result<()> {
+    let text = serde_json::to_string_pretty(figures).map_err(|e| Error::write(path, e))?;
+    files::save_text(path, &(text + "\n"))
 }
 
 /// Writes the pictures, the error map and the denoised picture.

@@ -15,6 +15,9 @@ static RENDERING: AtomicBool = AtomicBool::new(false);
 /// True once the checkpoint holds what this run has rendered, or the most of it.
 static SAVED: AtomicBool = AtomicBool::new(false);
 
+/// True once a frame of a sequence is written.
+static FRAMES: AtomicBool = AtomicBool::new(false);
+
 /// Held while files are written, which an exit would leave half done beside their targets; and by an exit, so that none is begun.
 static WRITING: Mutex<()> = Mutex::new(());
 
@@ -29,6 +32,8 @@ pub fn listen(notes: Notes) -> Result<()> {
         if at_once {
             notes.note(if SAVED.load(Ordering::SeqCst) {
                 "interrupted; no picture is written, but the checkpoint is saved: the same command with --resume goes on from it"
+            } else if FRAMES.load(Ordering::SeqCst) {
+                "interrupted; the frames that are finished stay: the same command goes on with the others"
             } else {
                 "interrupted; nothing is written"
             });
@@ -52,6 +57,11 @@ pub fn render_begins() {
 /// The checkpoint is complete: an interrupt that ends the process at once costs only what came after.
 pub fn saved() {
     SAVED.store(true, Ordering::SeqCst);
+}
+
+/// A frame is written: an interrupt that ends the process at once costs only what came after.
+pub fn frame_written() {
+    FRAMES.store(true, Ordering::SeqCst);
 }
 
 /// Runs `write`, which writes files; interrupts end nothing meanwhile.
