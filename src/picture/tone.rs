@@ -40,8 +40,8 @@ impl Tone {
 
     /// A linear colour, shown: linear again, from 0 to 1. Negative numbers and NaN count as 0. A grey stays a grey.
     pub fn apply(self, rgb: [f32; 3]) -> [f32; 3] {
-        // `max` takes NaN to the other number.
-        let light = Vec3::from(rgb.map(|v| v.max(0.0).min(BRIGHTEST)));
+        // Not so with NaN.
+        let light = Vec3::from(rgb.map(|v| if v > 0.0 { v.min(BRIGHTEST) } else { 0.0 }));
         let shown = match self {
             Tone::Srgb => light,
             Tone::Agx => agx(light),

@@ -65,7 +65,7 @@ const OPTIONS: &[(&[&str], &str)] = &[
     ),
     (
         &["frame", "frames", "animation", "a", "start", "end", "turn", "orbit", "spin", "rotate", "fps"],
-        "a turn around the scene is --turntable N, of which --frames A..B is a part; any other animation is a scene file for each of its pictures",
+        "a turn around the scene is --turntable N, of which --frames A..B is a part; for any other animation a scene is one picture of it",
     ),
     (&["crop", "region", "border", "window"], "the whole film is rendered; a part of the samples is --samples A..B"),
     (
