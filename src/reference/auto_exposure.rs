@@ -120,7 +120,9 @@ impl Reference {
         let bright = logs[((logs.len() - 1) as f64 * NOT_BRIGHT) as usize];
         let [least, most] = KEYS.map(|key| key.log2() - mean);
         let stops = (BRIGHT.log2() - bright).clamp(least, most);
-        AutoExposure { stops: ((stops / STEP).round() * STEP).clamp(-MOST, MOST) as f32, warning: None }
+        let rounded = ((stops / STEP).round() * STEP).clamp(-MOST, MOST);
+        // No minus before 0.
+        AutoExposure { stops: rounded as f32 + 0.0, warning: None }
     }
 
     /// What a pixel shows of surfaces, and in all.
