@@ -32,7 +32,7 @@ fn main() -> luminaire::Result<()> {
         let error = frame.error.map_or("not known yet".into(), |error| format!("{:.1} %", 100.0 * error));
         println!("{:5.1} samples a pixel, error {error}, {} bytes to show", frame.spp, frame.srgb.len());
     })?;
-    rendered.film.save(Path::new("progressive.png"), scene.settings.exposure)?;
+    rendered.film.save(Path::new("progressive.png"), backend::development(&scene))?;
     println!("progressive.png: {:.1} s", rendered.progress.seconds);
     Ok(())
 }
@@ -61,6 +61,7 @@ pub fn watch(scene: &Scene, enough: f64, mut show: impl FnMut(&Frame)) -> lumina
 /// Renders until `stop` is set, and sends a frame now and then.
 fn render(scene: &Scene, frames: Sender<Frame>, stop: &AtomicBool) -> luminaire::Result<Rendered> {
     let mut renderer = backend::open(scene, &backend::Request::default())?;
+    let development = backend::development(scene);
     let mut last = Instant::now();
     let mut send = |rendered: &Rendered| {
         if last.elapsed() < FRAME {
@@ -71,7 +72,7 @@ fn render(scene: &Scene, frames: Sender<Frame>, stop: &AtomicBool) -> luminaire:
         let frame = Frame {
             spp: rendered.progress.spp(),
             error: film.error().map(|error| error.relative()),
-            srgb: picture::to_srgb8(&film.to_linear(), scene.settings.exposure),
+            srgb: picture::to_srgb8(&film.to_linear(), development),
         };
         // Where nobody looks any more, the render goes on all the same.
         let _ = frames.send(frame);

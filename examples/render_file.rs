@@ -33,7 +33,7 @@ pub fn render(file: &Path, picture: &Path, spp: Option<u32>) -> luminaire::Resul
     let stop = AtomicBool::new(false);
     let rendered = renderer.resume(Rendered::nothing(renderer.size, 0)?, limits, &mut progress, &stop)?;
     eprintln!();
-    rendered.film.save(picture, scene.settings.exposure)?;
+    rendered.film.save(picture, backend::development(&scene))?;
     if let Some(error) = rendered.progress.error {
         println!("{}: estimated error {:.1} %", picture.display(), 100.0 * error.relative());
     }

@@ -17,7 +17,7 @@ fn main() -> luminaire::Result<()> {
     let (_, reference) = &pictures[0];
     for (backend, film) in &pictures {
         let file = format!("scene_in_code-{backend}.png");
-        film.save(file.as_ref(), scene.settings.exposure)?;
+        film.save(file.as_ref(), backend::development(&scene))?;
         let apart = compare(&picture(film), &picture(reference), 0)?;
         let noise = film.error().map_or(f64::NAN, |error| error.rel_mse);
         println!("{file}: relMSE {:.1e} against the reference, estimated {noise:.1e} against the truth", apart.relmse);

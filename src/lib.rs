@@ -29,7 +29,7 @@
 //! let request = Request { backend: Some(Backend::Cpu), device: None };
 //! let mut renderer = backend::open(&scene, &request)?;
 //! let film = renderer.render(Limits { spp: Some(4), ..Limits::default() })?;
-//! film.save(&folder.join("cornell.png"), scene.settings.exposure)?;
+//! film.save(&folder.join("cornell.png"), backend::development(&scene))?;
 //! # assert_eq!((film.width, film.least_samples()), (32, 4));
 //! # assert!(folder.join("cornell.png").is_file());
 //! # Ok(())

@@ -3,19 +3,20 @@
 use super::{Aovs, ErrorEstimate, Film};
 use crate::Result;
 use crate::files::write_file_atomically;
-use crate::picture::{Attribute, Exr, Format, Values, save_linear};
+use crate::picture::{Attribute, Development, Exr, Format, MARK, Values, save_linear, save_marked};
 use std::fs::File;
 use std::path::Path;
 
 impl Film {
-    /// Writes the picture to `path` in the format of its ending. `exposure` is in stops and changes a PNG only.
+    /// Writes the picture to `path` in the format of its ending. `how` is an exposure in stops, or a whole
+    /// [`Development`], and changes a PNG only.
     ///
     /// # Errors
     /// [`Error::Usage`](crate::Error::Usage) for an unknown ending, [`Error::Write`](crate::Error::Write) if the system refuses; then nothing has changed at `path`.
-    pub fn save(&self, path: &Path, exposure: f32) -> Result<()> {
+    pub fn save(&self, path: &Path, how: impl Into<Development>) -> Result<()> {
         match Format::of(path)? {
             Format::Exr => self.save_exr(path, vec![], vec![], |_| Ok(())),
-            Format::Png | Format::Hdr => save_linear(path, self.width, self.height, &self.to_linear(), exposure),
+            Format::Png | Format::Hdr => save_linear(path, self.width, self.height, &self.to_linear(), how),
         }
     }
 
@@ -24,9 +25,27 @@ impl Film {
     /// # Errors
     /// [`Error::Write`](crate::Error::Write) if the system refuses; then nothing has changed at `path`.
     pub fn save_with_aovs(&self, path: &Path, aovs: &Aovs) -> Result<()> {
+        self.save_exr(path, self.with_samples(aovs), vec![], |_| Ok(()))
+    }
+
+    /// Writes the picture with a mark, a line of ASCII text, in its head, which [`mark`](crate::picture::mark()) reads; an EXR with these AOVs as
+    /// [`Film::save_with_aovs`] does.
+    ///
+    /// # Errors
+    /// As for [`Film::save`].
+    pub fn save_marked(&self, path: &Path, how: Development, aovs: Option<&Aovs>, mark: &str) -> Result<()> {
+        if Format::of(path)? != Format::Exr {
+            return save_marked(path, (self.width, self.height), &self.to_linear(), how, Some(mark));
+        }
+        let more = aovs.map_or(vec![], |aovs| self.with_samples(aovs));
+        self.save_exr(path, more, vec![(MARK, Attribute::Text(mark))], |_| Ok(()))
+    }
+
+    /// The channels of AOVs and of the numbers of samples.
+    fn with_samples(&self, aovs: &Aovs) -> Vec<(String, Values)> {
         let mut more = aovs.channels();
         more.push(("samples".into(), Values::Integer(self.samples.clone())));
-        self.save_exr(path, more, vec![], |_| Ok(()))
+        more
     }
 
     /// Writes an EXR picture with further channels and attributes; `finish` may still change the file.
@@ -71,7 +90,7 @@ fn write_exr<'a>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::picture::to_srgb8;
+    use crate::picture::{self, to_srgb8};
 
     /// A film of 9 x 2 pixels with values from 0 to 1e5, two samples each.
     fn film() -> Film {
@@ -144,6 +163,22 @@ mod tests {
         assert!((off / 2000.0).abs() < 1e-3, "the weakest channel is off by {} in the mean", off / 2000.0);
         // 0.0038 is just below half a step of 1/128.
         assert_eq!(got[3 * 7..3 * 8], [1.0, 0.5, 0.0]);
+    }
+
+    #[test]
+    fn a_mark_is_read_again_and_changes_no_pixel() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["a.png", "a.exr", "a.HDR"] {
+            let path = folder.path().join(name);
+            film().save(&path, 1.0).unwrap();
+            assert_eq!(picture::mark(&path), None, "{name}");
+            let plain = read(&path);
+            film().save_marked(&path, 1.0.into(), None, "12 of 40: 0a1b").unwrap();
+            assert_eq!((picture::mark(&path).as_deref(), read(&path)), (Some("12 of 40: 0a1b"), plain), "{name}");
+            std::fs::write(&path, "nothing").unwrap();
+            assert_eq!(picture::mark(&path), None, "{name}");
+            assert_eq!(picture::mark(folder.path()), None);
+        }
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! What was rendered: all that samples depend on, so that samples of two pictures are never added up.
 
+use crate::picture::{Development, Tone};
 use crate::scene::{
     Environment, EnvironmentImage, FilmSettings, Mesh, Object, RenderSettings, Scene, Texture, Triangle,
 };
@@ -28,8 +29,11 @@ pub struct Provenance {
     pub integrator: String,
     /// Digests of the rest of the scene, by name.
     pub digests: BTreeMap<String, String>,
-    /// Exposure of a PNG in stops. Another one makes no difference.
+    /// Exposure of a PNG in stops; 0 where it was still to be found ([`Exposure::Auto`](crate::scene::Exposure::Auto)). Another one makes no difference.
     pub exposure: f32,
+    /// Tone curve of a PNG. Another one makes no difference.
+    #[serde(default)]
+    pub tone: Tone,
 }
 
 impl Provenance {
@@ -54,7 +58,7 @@ impl Provenance {
             files: _,
         } = scene;
         let FilmSettings { width, height, filter, filter_radius } = *film;
-        let RenderSettings { spp: _, seed, exposure, sampler } = *settings;
+        let RenderSettings { spp: _, seed, exposure, tone, sampler } = *settings;
         let digests = [
             ("geometry", geometry(meshes, objects)),
             (
@@ -94,8 +98,21 @@ impl Provenance {
             sampler: format!("{sampler:?}"),
             integrator: format!("{integrator:?}"),
             digests: digests.map(|(name, value)| (name.to_owned(), value)).into(),
-            exposure,
+            exposure: exposure.stops().unwrap_or(0.0),
+            tone,
         }
+    }
+
+    /// How its pictures are developed, unless somebody wants it otherwise.
+    pub fn development(&self) -> Development {
+        Development { exposure: self.exposure, tone: self.tone }
+    }
+
+    /// A digest of all that the samples depend on, and of `more`.
+    pub fn digest(&self, more: &str) -> String {
+        let Provenance { version, scene: _, width, height, seed, sampler, integrator, digests, exposure: _, tone: _ } =
+            self;
+        digest(|hash| write(hash, &(version, width, height, seed, sampler, integrator, digests, more)))
     }
 
     /// In what a render differs from another, of which this is the provenance; empty if their samples belong to one picture.

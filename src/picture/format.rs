@@ -51,7 +51,7 @@ fn conversion(ending: &str) -> String {
         }
         "pic" | "rgbe" => ": .hdr is this format".into(),
         "mp4" | "mov" | "avi" | "webm" => {
-            ", a picture for each frame, for example for `ffmpeg -i frame%04d.png a.mp4`".into()
+            ", a picture for each frame, for example `--turntable 120 -o frame-%04d.png` for `ffmpeg -i frame-%04d.png a.mp4`".into()
         }
         _ => String::new(),
     }

@@ -2,11 +2,13 @@
 //! as textures and environments.
 
 pub(crate) mod decode;
+mod development;
 mod encoding;
 mod first_bytes;
 mod foreign;
 mod format;
 mod icc;
+mod mark;
 mod openexr;
 mod pfm;
 mod pixels;
@@ -15,14 +17,21 @@ mod primaries;
 mod radiance;
 mod read;
 mod srgb;
+mod tone;
 mod write;
 
 pub use crate::memory::{available as free_memory, gib as bytes_in_words};
+pub use development::{Development, to_srgb8};
 pub use format::{Format, check_output};
+pub(crate) use mark::MARK;
+pub use mark::mark;
 pub use openexr::{Attribute, Exr, Values};
 pub(crate) use openexr::{read_channels, read_texts};
 pub use pixels::Picture;
 pub use read::read;
 pub(crate) use srgb::linear;
-pub use srgb::{srgb, to_srgb8};
+pub use srgb::srgb;
+pub use tone::Tone;
+pub(crate) use tone::luminance;
+pub(crate) use write::save_marked;
 pub use write::{save_linear, save_png};

@@ -10,24 +10,12 @@ pub(crate) fn linear(srgb: f32) -> f32 {
     if srgb <= 0.040_45 { srgb / 12.92 } else { ((srgb + 0.055) / 1.055).powf(2.4) }
 }
 
-/// Linear values, times `2^exposure` and clamped, as 8-bit sRGB.
-pub fn to_srgb8(linear: &[f32], exposure: f32) -> Vec<u8> {
-    let scale = exposure.exp2();
-    // Rust's `as` saturates, and takes NaN (0 times an infinite scale) to 0.
-    linear.iter().map(|v| (255.0 * srgb((v * scale).clamp(0.0, 1.0))).round() as u8).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn srgb_transfer_is_continuous_and_inverse_of_the_standard() {
-        for code in 0..=255u8 {
-            let v = f64::from(code) / 255.0;
-            let linear = if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) };
-            assert_eq!(to_srgb8(&[linear as f32], 0.0), [code]);
-        }
+    fn srgb_transfer_is_continuous() {
         assert!((srgb(0.003_130_8) - srgb(0.003_130_9)).abs() < 1e-5);
     }
 

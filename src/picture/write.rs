@@ -1,33 +1,52 @@
 //! Pictures to disk: PNG to look at, EXR and HDR to compute with.
 
-use super::Format;
+use super::mark::{MARK, marked_hdr};
 use super::openexr::Exr;
-use super::srgb::to_srgb8;
+use super::{Development, Format, to_srgb8};
 use crate::Result;
 use crate::files::write_atomically;
 use image::{ExtendedColorType, ImageEncoder, ImageError, ImageResult};
 use std::io::Write;
 use std::path::Path;
 
-/// Writes linear RGB, row by row from the top, to `path` in the format of its ending. `exposure` is in stops and changes a PNG only.
+/// Writes linear RGB, row by row from the top, to `path` in the format of its ending. `how` is an exposure in stops, or
+/// a whole [`Development`], and changes a PNG only.
 ///
 /// # Errors
 /// [`Error::Usage`](crate::Error::Usage) for an unknown ending, [`Error::Write`](crate::Error::Write) if the system refuses; then nothing has changed at `path`.
-pub fn save_linear(path: &Path, width: u32, height: u32, linear: &[f32], exposure: f32) -> Result<()> {
+pub fn save_linear(path: &Path, width: u32, height: u32, linear: &[f32], how: impl Into<Development>) -> Result<()> {
+    save_marked(path, (width, height), linear, how.into(), None)
+}
+
+/// The same, with a mark in the file's head ([`mark`](super::mark())); not in an EXR, whose mark is one of the film's attributes.
+pub(crate) fn save_marked(
+    path: &Path,
+    (width, height): (u32, u32),
+    linear: &[f32],
+    how: Development,
+    mark: Option<&str>,
+) -> Result<()> {
     let format = Format::of(path)?;
     write_atomically(path, |out| match format {
-        Format::Png => write_png(out, width, height, &to_srgb8(linear, exposure)),
+        Format::Png => write_png(out, width, height, &to_srgb8(linear, how), mark),
         Format::Exr => {
             let exr =
                 Exr { width, height, rgb: bytemuck::cast_slice(linear), error: None, more: vec![], attributes: &[] };
             Ok(out.write_all(&exr.encode().map_err(std::io::Error::other)?)?)
         }
-        Format::Hdr => image::codecs::hdr::HdrEncoder::new(out).write_image(
-            bytemuck::cast_slice(&before_truncation(linear)),
-            width,
-            height,
-            ExtendedColorType::Rgb32F,
-        ),
+        Format::Hdr => {
+            let mut bytes = Vec::new();
+            image::codecs::hdr::HdrEncoder::new(&mut bytes).write_image(
+                bytemuck::cast_slice(&before_truncation(linear)),
+                width,
+                height,
+                ExtendedColorType::Rgb32F,
+            )?;
+            if let Some(mark) = mark {
+                bytes = marked_hdr(&bytes, mark);
+            }
+            Ok(out.write_all(&bytes)?)
+        }
     })
 }
 
@@ -38,12 +57,12 @@ pub fn save_linear(path: &Path, width: u32, height: u32, linear: &[f32], exposur
 pub fn save_png(path: &Path, picture: &image::RgbImage) -> Result<()> {
     write_atomically(path, |out| {
         let (width, height) = picture.dimensions();
-        write_png(out, width, height, picture)
+        write_png(out, width, height, picture, None)
     })
 }
 
 /// 8 bits a channel, with the name of the program that made them, by which it knows its own files again.
-fn write_png(out: &mut dyn Write, width: u32, height: u32, rgb: &[u8]) -> ImageResult<()> {
+fn write_png(out: &mut dyn Write, width: u32, height: u32, rgb: &[u8], mark: Option<&str>) -> ImageResult<()> {
     let failed = |e: png::EncodingError| ImageError::IoError(e.into());
     let mut encoder = png::Encoder::new(out, width, height);
     encoder.set_color(png::ColorType::Rgb);
@@ -51,6 +70,9 @@ fn write_png(out: &mut dyn Write, width: u32, height: u32, rgb: &[u8]) -> ImageR
     encoder.set_compression(png::Compression::Fast);
     encoder.set_filter(png::Filter::Adaptive);
     encoder.add_text_chunk("Software".into(), "luminaire".into()).map_err(failed)?;
+    if let Some(mark) = mark {
+        encoder.add_text_chunk(MARK.into(), mark.into()).map_err(failed)?;
+    }
     let mut writer = encoder.write_header().map_err(failed)?;
     writer.write_image_data(rgb).map_err(failed)?;
     writer.finish().map_err(failed)

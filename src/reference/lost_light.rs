@@ -8,7 +8,6 @@ use super::luminaire::Unoccluded;
 use super::path::Vertex;
 use super::prepared_scene::Reference;
 use super::surfel::mean;
-use crate::memory::available;
 use crate::sampling::{random4, ray_salt, uniform};
 use crate::scene::{Integrator, LightSampling, Luminaire, Material, SampledLuminaire, Scene};
 use glam::{DMat3, DVec3};
@@ -28,8 +27,6 @@ const MOST_SURFACES: u32 = 32;
 const LEAST_OF_ITS_OWN: f64 = 0.05;
 /// ... and this share of all light. A glass on a table in the sun has less.
 const LEAST_OF_ALL: f64 = 0.01;
-/// Bytes that the search takes for a triangle, as 980 000 of them had it.
-const TRIANGLE: u64 = 240;
 /// Paths with fewer bounces than this may be too short for a lamp behind glass.
 const ENOUGH_BOUNCES: u32 = 8;
 
@@ -54,6 +51,11 @@ impl Light {
 /// Sentences for warnings, one for each luminaire of which the picture will lack much; none if all light is found, or there is none at all
 /// ([`Scene::dark_because`]). Scenes without such luminaires, or without glass and mirrors, cost nothing.
 pub fn lost_light(scene: &Scene) -> Vec<String> {
+    lost_light_by(scene, &mut None)
+}
+
+/// The same by a tracer of the scene, which is made and left there if there is none and one is needed.
+pub fn lost_light_by(scene: &Scene, tracer: &mut Option<Reference>) -> Vec<String> {
     let estimator = scene.integrator.estimator();
     if scene.dark_because().is_some() || scene.integrator.check_ends().is_err() {
         return vec![];
@@ -64,15 +66,14 @@ pub fn lost_light(scene: &Scene) -> Vec<String> {
     let may_be_short = estimator.max_bounces.is_some_and(|most| most < ENOUGH_BOUNCES);
     let sampled = !by_chance && !scene.luminaires.is_empty();
     if impulses && (sampled || may_be_short) {
-        let triangles: u64 = scene.meshes.iter().map(|mesh| mesh.triangles.len() as u64).sum();
-        if available().is_some_and(|free| triangles * TRIANGLE > free) {
+        if tracer.is_none() && !Reference::fits(scene) {
             sentences.push(format!(
                 "{}: there is too little memory to find out whether the picture lacks light that comes through glass or by mirrors",
                 scene.path.display()
             ));
             return sentences;
         }
-        let reference = Reference::new(scene);
+        let reference = tracer.get_or_insert_with(|| Reference::new(scene));
         let seen = reference.light_on_what_is_seen();
         if sampled {
             sentences.extend(reference.lost_of_luminaires(&seen));

@@ -13,9 +13,11 @@
 //! | Intersection Problems | [`intersect`], [`surfel`]: `offset_ray_origin` |
 //! | Sensor Modelling | [`sensor`]: `sensor_ray` |
 //! | (what no estimator of the lecture finds) | [`lost_light`] |
+//! | (how bright a picture is to be shown) | `AutoExposure` |
 //! | Path Trace Function, A Simple Raytracer, Albedo Termination | [`path`]: `radiance` |
 
 mod aov;
+mod auto_exposure;
 pub mod bsdf;
 pub mod environment;
 pub mod hit;
@@ -35,4 +37,5 @@ mod tracer;
 mod tree;
 pub mod warp;
 
+pub use auto_exposure::AutoExposure;
 pub use prepared_scene::Reference;

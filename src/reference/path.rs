@@ -58,7 +58,7 @@ impl Reference {
     }
 
     /// Follows a path for as long as `met` says, which is given every ray of it.
-    fn follow(&self, pixel: u32, sample: u32, met: &mut impl FnMut(Vertex) -> bool) -> (DVec3, Rays) {
+    pub(super) fn follow(&self, pixel: u32, sample: u32, met: &mut impl FnMut(Vertex) -> bool) -> (DVec3, Rays) {
         let settings = &self.scene.settings;
         let numbers = |block: u32| settings.sampler.numbers(pixel, sample, block, settings.seed);
         let salt = |ray: u32| ray_salt(pixel, sample, ray, settings.seed);

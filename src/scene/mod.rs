@@ -22,6 +22,7 @@ mod settings;
 mod texture;
 mod world;
 
+pub use crate::picture::Tone;
 pub use crate::sampling::Sampler;
 pub use coat::coat_transmittance;
 pub use environment::{Environment, EnvironmentDistribution, EnvironmentImage};
@@ -36,6 +37,6 @@ pub use material::{Maps, Material};
 pub use mesh::{Mesh, Object, Triangle};
 pub(crate) use mesh::{moved_box, outward, widen};
 pub use sensor::{Lens, Projection, Sensor};
-pub use settings::{FilmSettings, RenderSettings};
+pub use settings::{Exposure, FilmSettings, RenderSettings};
 pub use texture::Texture;
 pub use world::Scene;

@@ -1,7 +1,8 @@
 //! The camera.
 
 use super::settings::FilmSettings;
-use glam::{DVec3, Vec3};
+use glam::{DQuat, DVec3, Vec3};
+use std::f64::consts::TAU;
 
 /// The camera.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,6 +53,16 @@ const ROUNDING: f64 = f32::EPSILON as f64 * 0.5;
 const ROUNDINGS_IN_A_PIXEL: f64 = 16.0;
 
 impl Sensor {
+    /// The sensor after so many turns around its target, about its own up: counter-clockwise as seen from above, so that the scene seems to turn
+    /// clockwise. After none it is the sensor itself.
+    #[must_use]
+    pub fn turned(&self, turns: f64) -> Sensor {
+        let (target, up) = (self.target.as_dvec3(), self.up.as_dvec3().normalize());
+        let arm = self.position.as_dvec3() - target;
+        let turned = DQuat::from_axis_angle(up, turns * TAU) * arm;
+        Sensor { position: if turns == 0.0 { self.position } else { (target + turned).as_vec3() }, ..self.clone() }
+    }
+
     /// How far in front of the eye point, along the line of sight, a tracer of single precision lets camera rays start: 0, the eye point itself,
     /// unless pixels are so small, and so far away, that the rounding of points and directions would show. Then it is a plane in front of the
     /// scene's bounds; there is none if the bounds reach up to the eye point.
@@ -95,5 +106,35 @@ impl Sensor {
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
         let nearest = forward.dot(middle - self.position.as_dvec3()) - forward.abs().dot(half);
         (nearest - 0.5 * half.length()).max(0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_turns_about_its_up_as_seen_from_above() {
+        let sensor = |position, up| Sensor {
+            position,
+            target: Vec3::new(1.0, 1.0, 1.0),
+            up,
+            projection: Projection::Perspective { fov: 40.0 },
+            lens: None,
+        };
+        // From the front, +z, a quarter of a turn goes to the right, +x; heights stay.
+        let start = sensor(Vec3::new(1.0, 3.0, 5.0), Vec3::Y * 7.0);
+        let near = |turns: f64, expected: Vec3| {
+            let turned = start.turned(turns);
+            assert!(turned.position.distance(expected) < 1e-6, "{turns}: {}", turned.position);
+            assert_eq!((turned.target, turned.up), (start.target, start.up));
+        };
+        near(0.25, Vec3::new(5.0, 3.0, 1.0));
+        near(0.5, Vec3::new(1.0, 3.0, -3.0));
+        near(0.75, Vec3::new(-3.0, 3.0, 1.0));
+        assert_eq!(start.turned(0.0), start);
+        // Where +z is up, as in Blender.
+        let up = sensor(Vec3::new(1.0, -3.0, 2.0), Vec3::Z).turned(0.25);
+        assert!(up.position.distance(Vec3::new(5.0, 1.0, 2.0)) < 1e-6, "{}", up.position);
     }
 }

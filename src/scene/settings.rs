@@ -1,6 +1,7 @@
-//! How a scene is rendered: size of the picture, samples, seed, exposure.
+//! How a scene is rendered: size of the picture, samples, seed, and how bright and by which curve it is shown.
 
 use super::filter::Filter;
+use crate::picture::Tone;
 use crate::sampling::Sampler;
 
 /// Size of the picture and its pixel filter.
@@ -23,6 +24,25 @@ impl FilmSettings {
     }
 }
 
+/// How bright a picture is shown.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Exposure {
+    /// In stops: radiance times 2^stops.
+    Stops(f32),
+    /// As the program finds it by looking at the scene ([`development`](crate::backend::development)).
+    Auto,
+}
+
+impl Exposure {
+    /// The stops; none if they have to be found.
+    pub fn stops(self) -> Option<f32> {
+        match self {
+            Exposure::Stops(stops) => Some(stops),
+            Exposure::Auto => None,
+        }
+    }
+}
+
 /// What a scene file may say about its own rendering.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RenderSettings {
@@ -30,14 +50,29 @@ pub struct RenderSettings {
     pub spp: u32,
     /// Seed of the random numbers.
     pub seed: u32,
-    /// Exposure in stops: the PNG shows radiance times 2^exposure.
-    pub exposure: f32,
+    /// How bright a PNG shows the picture.
+    pub exposure: Exposure,
+    /// By which curve.
+    pub tone: Tone,
     /// Where the random numbers come from.
     pub sampler: Sampler,
 }
 
 impl Default for RenderSettings {
     fn default() -> Self {
-        RenderSettings { spp: 64, seed: 0, exposure: 0.0, sampler: Sampler::default() }
+        RenderSettings {
+            spp: 64,
+            seed: 0,
+            exposure: Exposure::Stops(0.0),
+            tone: Tone::default(),
+            sampler: Sampler::default(),
+        }
+    }
+}
+
+impl RenderSettings {
+    /// For a model of which nothing is known: the exposure is found, and the curve shows base colours as they are without clipping highlights.
+    pub fn automatic() -> Self {
+        RenderSettings { exposure: Exposure::Auto, tone: Tone::Neutral, ..RenderSettings::default() }
     }
 }

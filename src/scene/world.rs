@@ -37,7 +37,7 @@ pub struct Scene {
     pub film: FilmSettings,
     /// Which estimator runs.
     pub integrator: Integrator,
-    /// Samples, seed and exposure, unless the caller wants others.
+    /// Samples, seed, exposure and tone curve, unless the caller wants others.
     pub settings: RenderSettings,
     /// What the loader had to guess, drop or scale; one sentence each, with file and line where there is one.
     pub warnings: Vec<String>,

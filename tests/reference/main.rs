@@ -6,6 +6,7 @@ mod common;
 mod coats;
 mod environment;
 mod estimators;
+mod exposure;
 mod impulses;
 mod intersection;
 mod light;

@@ -3,8 +3,8 @@
 use super::*;
 use glam::Vec3;
 use luminaire::scene::{
-    AreaSampling, Directions, Environment, Estimator, Extinction, Filter, Integrator, Lens, LightSampling, PRESETS,
-    Projection, Sampler,
+    AreaSampling, Directions, Environment, Estimator, Exposure, Extinction, Filter, Integrator, Lens, LightSampling,
+    PRESETS, Projection, Sampler, Tone,
 };
 
 const OBJECT: &str = "[[object]]\nmesh = \"mesh.obj\"\n";
@@ -119,6 +119,29 @@ fn estimators_that_make_no_sense() {
 fn samplers_are_named() {
     assert_eq!(tables("[render]\nsampler = \"independent\"\n").settings.sampler, Sampler::Independent);
     toml_fails("[render]\nsampler = \"dice\"\n", (2, 11), &["dice", "independent"]);
+}
+
+#[test]
+fn how_a_picture_is_shown() {
+    let settings = |text: &str| tables(&format!("[render]\n{text}")).settings;
+    assert_eq!((settings("").exposure, settings("").tone), (Exposure::Stops(0.0), Tone::Srgb));
+    for tone in Tone::ALL {
+        assert_eq!(settings(&format!("tone = \"{}\"\n", tone.name())).tone, tone);
+    }
+    assert_eq!(settings("exposure = \"auto\"\n").exposure, Exposure::Auto);
+    assert_eq!(settings("exposure = -2\n").exposure, Exposure::Stops(-2.0));
+    assert_eq!(settings("exposure = 0.5\n").exposure, Exposure::Stops(0.5));
+    toml_fails("[render]\nexposure = \"bright\"\n", (2, 12), &["-64 to 64", "\"auto\""]);
+    toml_fails("[render]\nexposure = 65\n", (2, 12), &["-64 to 64"]);
+    toml_fails("[render]\nexposure = true\n", (2, 12), &["-64 to 64", "\"auto\""]);
+    toml_fails("[render]\ntone = \"filmic\"\n", (2, 8), &["filmic", "\"agx\""]);
+    toml_fails("[render]\ntone = \"Standard\"\n", (2, 8), &["Standard", "\"srgb\""]);
+    toml_fails("[render]\ntone = \"khronos\"\n", (2, 8), &["\"neutral\""]);
+    toml_fails("[render]\ntone = \"agcs\"\n", (2, 8), &["agx", "neutral"]);
+    toml_fails("[render]\nview_transform = \"AgX\"\n", (2, 1), &["`tone`", "\"agx\""]);
+    toml_fails("[film]\ntone_mapping = true\n", (2, 1), &["`tone` in [render]"]);
+    toml_fails("[film]\ngamma = 2.2\n", (2, 1), &["`exposure`", "`tone`"]);
+    toml_fails("[render]\nauto_exposure = true\n", (2, 1), &["exposure = \"auto\""]);
 }
 
 /// A scene without luminaires but with these tables.

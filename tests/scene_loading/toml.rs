@@ -2,13 +2,13 @@
 
 use super::*;
 use glam::{Affine3A, Vec3};
-use luminaire::scene::{Estimator, Integrator, Luminaire, Projection};
+use luminaire::scene::{Estimator, Exposure, Integrator, Luminaire, Projection};
 
 #[test]
 fn a_minimal_scene_file_has_the_documented_defaults() {
     let scene = scene("").load("scene.toml");
     assert_eq!((scene.film.width, scene.film.height), (512, 512));
-    assert_eq!((scene.settings.spp, scene.settings.seed, scene.settings.exposure), (64, 0, 0.0));
+    assert_eq!((scene.settings.spp, scene.settings.seed, scene.settings.exposure), (64, 0, Exposure::Stops(0.0)));
     assert_eq!(scene.integrator, Integrator::Path(Estimator::default()));
     assert_eq!((scene.environment.clone(), scene.sensor.lens), (None, None));
     assert_eq!((scene.sensor.up, scene.objects[0].name.as_str()), (Vec3::Y, "mesh"));
@@ -31,7 +31,10 @@ fn every_key_is_read() {
     assert_eq!((scene.sensor.position, scene.sensor.up), (Vec3::new(0.0, 1.0, 5.5), Vec3::X));
     assert_eq!(scene.sensor.projection, Projection::Perspective { fov: 33.0 });
     assert_eq!(scene.integrator, Integrator::Path(Estimator { max_bounces: Some(7), ..Estimator::default() }));
-    assert_eq!((scene.settings.spp, scene.settings.seed, scene.settings.exposure), (9, u32::MAX, -1.5));
+    assert_eq!(
+        (scene.settings.spp, scene.settings.seed, scene.settings.exposure),
+        (9, u32::MAX, Exposure::Stops(-1.5))
+    );
     assert_eq!(scene.objects[0].name, "x");
     let y = &scene.materials[scene.objects[0].material.expect("y") as usize];
     assert_eq!((y.ambient.x, y.lambert.x, y.glossy.x, y.exponent), (0.1, 0.2, 0.3, 40.0));

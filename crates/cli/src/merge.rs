@@ -3,7 +3,8 @@
 use crate::shared::error_line::{black_picture, error_line};
 use crate::shared::outputs::Outputs;
 use crate::shared::printing::{print, warn};
-use crate::shared::values::stops;
+use crate::shared::tone_name::{ToneName, stops_alone};
+use luminaire::picture::Development;
 use luminaire::{Result, part, picture};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -13,6 +14,8 @@ const HELP: &str = "\
 Examples:
   luminaire merge part-*.exr -o picture.png -o picture.exr
       the picture of a render that was divided by --samples 0..64, 64..128, ...
+  luminaire merge part-*.exr -o picture.png --exposure 0.5 --tone agx
+      shown in another way than the parts say
 
 The parts must be of the same scene, size, seed, estimator and version, and hold every sample from number 0 on once. The picture is the one of a single
 render, but for rounding (1e-6 of each number at most).
@@ -33,8 +36,11 @@ pub struct Options {
     #[arg(short, long, required = true, value_name = "FILE")]
     output: Vec<PathBuf>,
     /// Exposure of a PNG in stops [default: that of the parts].
-    #[arg(long, value_name = "STOPS", allow_negative_numbers = true, value_parser = stops)]
+    #[arg(long, value_name = "STOPS", allow_negative_numbers = true, value_parser = stops_alone)]
     exposure: Option<f32>,
+    /// Tone curve of a PNG [default: that of the parts].
+    #[arg(long, value_name = "NAME")]
+    tone: Option<ToneName>,
 }
 
 /// Joins parts of a render, and writes the picture.
@@ -46,10 +52,14 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     }
     outputs.check(options.parts.iter().map(|part| ("one of the parts", &**part)))?;
     let (whole, provenance) = part::merge(&options.parts)?;
-    let exposure = options.exposure.unwrap_or(provenance.exposure);
+    let of_the_parts = provenance.development();
+    let development = Development {
+        exposure: options.exposure.unwrap_or(of_the_parts.exposure),
+        tone: options.tone.map_or(of_the_parts.tone, ToneName::tone),
+    };
     let mut text = String::new();
     for path in &options.output {
-        whole.film.save(path, exposure)?;
+        whole.film.save(path, development)?;
         text += &format!(
             "{}: {} x {} pixels, {} samples a pixel from {} part{}\n",
             path.display(),

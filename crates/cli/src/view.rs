@@ -4,12 +4,12 @@ use crate::shared::backend_name::{self, BackendName};
 use crate::shared::counts::{pixels, samples, seed};
 use crate::shared::estimator::EstimatorOptions;
 use crate::shared::film_size::FilmSize;
-use crate::shared::foreseen::warn_of_the_picture;
-use crate::shared::printing::warn;
-use crate::shared::values::stops;
+use crate::shared::foreseen::foresee;
+use crate::shared::printing::{note, warn};
+use crate::shared::tone_name::{ToneName, exposure};
 use luminaire::Result;
 use luminaire::film::Film;
-use luminaire::scene;
+use luminaire::scene::{self, Exposure};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -19,6 +19,8 @@ Examples:
       a window of the size that the scene file says
   luminaire view model.obj --width 1280 --height 720 --backend compute-bvh
       another size, and our own BVH to begin with
+  luminaire view model.obj --exposure auto --tone agx
+      as bright as its surfaces want it, and with soft highlights; X finds the exposure anew, T changes the curve
   luminaire view scenes/cornell/cornell.toml --spp 256
       the picture stops at 256 samples a pixel; C prints the camera, and writes it to cornell-camera-1.toml
 
@@ -46,9 +48,12 @@ pub struct Options {
     /// Height of the window in pixels [default: the scene's, or from --width at the scene's aspect ratio].
     #[arg(long, value_name = "PIXELS", allow_negative_numbers = true, value_parser = pixels::<16, LARGEST_SIDE>, help_heading = "Window")]
     height: Option<u32>,
-    /// Exposure in stops to begin with: radiance times 2^STOPS [default: the scene's].
-    #[arg(long, value_name = "STOPS", allow_negative_numbers = true, value_parser = stops, help_heading = "Window")]
-    exposure: Option<f32>,
+    /// Exposure in stops to begin with: radiance times 2^STOPS; `auto` finds one from the scene [default: the scene's].
+    #[arg(long, value_name = "STOPS|auto", allow_negative_numbers = true, value_parser = exposure, help_heading = "Window")]
+    exposure: Option<Exposure>,
+    /// Tone curve to begin with [default: the scene's].
+    #[arg(long, value_name = "NAME", help_heading = "Window")]
+    tone: Option<ToneName>,
 
     /// Leave the picture as it is after so many samples a pixel [default: it gets better without end].
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = samples, help_heading = "Quality")]
@@ -78,13 +83,16 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     let request = backend_name::request(options.backend, options.device.as_deref())?;
     options.estimator.check()?;
     let mut scene = scene::load(&options.scene)?;
+    let own_film = scene.film;
     FilmSize { width: options.width, height: options.height, largest: LARGEST_SIDE }.apply(&mut scene.film);
     Film::check_size(scene.film.width, scene.film.height)?;
     options.estimator.apply(&mut scene)?;
     scene.settings.seed = options.seed.unwrap_or(scene.settings.seed);
     scene.settings.exposure = options.exposure.unwrap_or(scene.settings.exposure);
-    warn_of_the_picture(&mut scene);
+    scene.settings.tone = options.tone.map_or(scene.settings.tone, ToneName::tone);
+    let foreseen = foresee(&mut scene, &own_film);
     scene.warnings.iter().for_each(warn);
+    foreseen.found.iter().for_each(|found| note(found));
     luminaire_view::run(luminaire_view::Options { scene, request, spp: options.spp.unwrap_or(u32::MAX) })?;
     Ok(ExitCode::SUCCESS)
 }

@@ -269,10 +269,26 @@ fn the_window_shows_what_render_writes_and_obeys() {
     // 0.73 in sRGB.
     middle([222, 222, 222]);
 
-    // Hidden and shown again; then the help.
+    // Hidden and shown again.
     view.xdotool(&format!("windowunmap {0} windowmap {0} windowfocus {0}", view.window));
     view.key("1");
     view.shows("the picture after it was hidden", &rendered(folder, CORNELL, size, &bvh), BELOW..size.1);
+    // Other curves, and another exposure.
+    // An exposure that is found goes by the window's aspect ratio, or by that of the scene file.
+    let text = std::fs::read_to_string(CORNELL).unwrap().replace("cornell.obj", &CORNELL.replace(".toml", ".obj"));
+    let text = text.replace("width = 512", "width = 240").replace("height = 512", "height = 100");
+    std::fs::write(folder.join("sized.toml"), text).unwrap();
+    let shown =
+        |how: &str| rendered(folder, "sized.toml", size, &[&bvh[..], &how.split(' ').collect::<Vec<_>>()].concat());
+    view.key("t");
+    view.shows("by the next curve", &shown("--exposure 1 --tone agx"), BELOW..size.1);
+    view.key("x");
+    let exposed = shown("--exposure auto --tone agx");
+    view.shows("exposed by what is seen", &exposed, BELOW..size.1);
+    view.key("p");
+    assert_eq!(image::open(view.file("cornell-view-3.png")).unwrap().to_rgb8(), exposed);
+    view.key("t t");
+    view.shows("the first curve again", &shown("--exposure auto"), BELOW..size.1);
     view.key("h");
     let white = || display.screen(size).pixels().filter(|pixel| pixel.0 == [255; 3]).count();
     view.until("the help", || (white() > 1500).then_some(()));

@@ -14,6 +14,7 @@ use super::shown::Shown;
 use super::sight::Sight;
 use super::wanted::{Order, Wanted};
 use super::worker;
+use luminaire::backend::development;
 use luminaire::scene::Sensor;
 use luminaire::{Error, Result};
 use std::io::Write;
@@ -62,7 +63,7 @@ impl App {
             sight: Sight { sensor: options.scene.sensor.clone(), film: options.scene.film },
             moving: false,
             shown: Shown::Picture,
-            exposure: options.scene.settings.exposure,
+            development: development(&options.scene),
             paused: false,
         };
         App {
@@ -166,9 +167,18 @@ impl App {
     pub fn act(&mut self, event_loop: &ActiveEventLoop, action: Action) {
         match action {
             Action::Expose(by) => {
-                self.wanted.exposure = (self.wanted.exposure + by).clamp(-64.0, 64.0);
+                let exposure = &mut self.wanted.development.exposure;
+                *exposure = (*exposure + by).clamp(-64.0, 64.0);
+                let text = format!("exposure {exposure:+.2} stops");
                 self.link.want(&self.wanted);
-                self.say(&format!("exposure {:+.2} stops", self.wanted.exposure));
+                self.say(&text);
+            }
+            Action::NextTone => {
+                let tone = &mut self.wanted.development.tone;
+                *tone = tone.next();
+                let text = format!("tone: {}", tone.name());
+                self.link.want(&self.wanted);
+                self.say(&text);
             }
             Action::Show(shown) => {
                 self.wanted.shown = shown;
@@ -211,6 +221,10 @@ impl App {
                     self.message = None;
                 }
                 self.redraw();
+            }
+            News::Exposed(stops) => {
+                self.wanted.development.exposure = stops;
+                self.link.want(&self.wanted);
             }
             News::Said(text) => {
                 // A stderr that nobody reads is no reason to fail.

@@ -4,7 +4,7 @@ use super::first_hit::FirstHit;
 use super::shown::Shown;
 use image::RgbImage;
 use luminaire::film::Film;
-use luminaire::picture::to_srgb8;
+use luminaire::picture::{Development, to_srgb8};
 use luminaire_measure::heat_map::{RELATIVE_ERRORS, heat_map};
 
 /// A film as it is shown.
@@ -17,10 +17,10 @@ pub struct Developed {
 }
 
 /// Develops a film; where it has no sample yet, `before` is seen. An error map is black while nothing is known.
-pub fn develop(film: &Film, before: Option<&Film>, shown: Shown, exposure: f32) -> Developed {
+pub fn develop(film: &Film, before: Option<&Film>, shown: Shown, how: impl Into<Development>) -> Developed {
     let bytes = match shown {
         Shown::Error => return Developed { image: error_map(film), size: (film.width, film.height) },
-        Shown::Picture => to_srgb8(&linear(film, before), exposure),
+        Shown::Picture => to_srgb8(&linear(film, before), how),
         Shown::First(FirstHit::Albedo) => to_srgb8(&linear(film, before), 0.0),
         // As normals are mostly shown: -1 to 1 as 0 to 255.
         Shown::First(FirstHit::Normal) => {

@@ -27,9 +27,9 @@ pub fn save_picture(stem: &str, saved: Saved, film: &Film, wanted: &Wanted) -> N
     };
     written(save_numbered(names(Path::new(""), stem, "view", ending), |path| {
         if saved == Saved::Exr || wanted.shown == Shown::Picture {
-            film.save(path, wanted.exposure)
+            film.save(path, wanted.development)
         } else {
-            picture::save_png(path, &develop(film, None, wanted.shown, wanted.exposure).image)
+            picture::save_png(path, &develop(film, None, wanted.shown, wanted.development).image)
         }
     }))
 }

@@ -16,6 +16,8 @@ const EXPOSURE: f32 = 1.0 / 3.0;
 pub enum Action {
     /// Adds so many stops to the exposure.
     Expose(f32),
+    /// Develops the picture by the next tone curve.
+    NextTone,
     /// Shows something else of the film.
     Show(Shown),
     /// Puts the camera where the scene has it.
@@ -47,6 +49,8 @@ pub fn action(key: Key<&str>, repeat: bool) -> Option<Action> {
         Key::Character("3") => Action::Show(Shown::First(FirstHit::Albedo)),
         Key::Character("4") => Action::Show(Shown::First(FirstHit::Normal)),
         Key::Character("5") => Action::Show(Shown::First(FirstHit::Depth)),
+        Key::Character("t" | "T") => Action::NextTone,
+        Key::Character("x" | "X") => Action::Order(Order::Expose),
         Key::Character("b" | "B") => Action::Order(Order::NextBackend),
         Key::Character("n" | "N") => Action::Order(Order::NextEstimator),
         Key::Character("p" | "P") => Action::Order(Order::Save(Saved::Png)),
@@ -64,12 +68,12 @@ mod tests {
 
     #[test]
     fn only_the_exposure_repeats() {
-        let keys = "+=-_rRfF12345bBnNpPoOcChH?";
+        let keys = "+=-_rRfF12345tTxXbBnNpPoOcChH?";
         for key in keys.split("").filter(|key| !key.is_empty()) {
             assert!(action(Key::Character(key), false).is_some(), "{key}");
             assert_eq!(action(Key::Character(key), true).is_some(), "+=-_".contains(key), "{key}");
         }
         assert_eq!(action(Key::Named(NamedKey::Escape), false), Some(Action::Quit));
-        assert_eq!(action(Key::Character("x"), false), None);
+        assert_eq!(action(Key::Character("y"), false), None);
     }
 }

@@ -6,6 +6,8 @@ use luminaire::Result;
 /// What the worker sends to the window.
 #[derive(Debug)]
 pub enum News {
+    /// An exposure in stops, which was ordered.
+    Exposed(f32),
     /// A picture to show.
     Frame(Frame),
     /// A message: what was done, or could not be done.

@@ -20,6 +20,8 @@ F                  frame the scene
 1 2                the picture, its estimated error
 3 4 5              albedo, normals, depth of the first surface
 + -                exposure, a third of a stop
+X                  exposure by what is seen
+T                  next tone curve
 B                  next backend
 N                  next estimator
 Space              pause

@@ -2,6 +2,7 @@
 
 use super::shown::Shown;
 use super::sight::Sight;
+use luminaire::picture::Development;
 
 /// The state that the worker keeps to.
 #[derive(Debug, Clone, PartialEq)]
@@ -12,8 +13,8 @@ pub struct Wanted {
     pub moving: bool,
     /// What of the film is shown.
     pub shown: Shown,
-    /// The exposure in stops.
-    pub exposure: f32,
+    /// How the picture is developed.
+    pub development: Development,
     /// Whether to add no more samples.
     pub paused: bool,
 }
@@ -25,6 +26,8 @@ pub enum Order {
     NextBackend,
     /// Trace with the next estimator.
     NextEstimator,
+    /// Find an exposure for what is seen.
+    Expose,
     /// Save a picture.
     Save(Saved),
     /// Write the camera to a file, as a scene file's `[sensor]` table.

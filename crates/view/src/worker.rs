@@ -12,6 +12,7 @@ use super::shown::Shown;
 use super::title::figures;
 use super::wanted::{Order, Saved, Wanted};
 use luminaire::backend::{self, Backend, Request};
+use luminaire::reference::AutoExposure;
 use luminaire::render::SceneTracer;
 use luminaire::scene::Scene;
 use luminaire::{Error, Result};
@@ -132,6 +133,7 @@ impl Worker {
                     Order::Quit => return Ok(()),
                     Order::NextBackend => self.next_backend(&wanted),
                     Order::NextEstimator => self.next_estimator()?,
+                    Order::Expose => self.expose(&wanted),
                     Order::SaveCamera => {
                         let news = save_camera(&self.stem, &wanted.sight.sensor, self.scene.origin);
                         news.into_iter().for_each(&self.send);
@@ -225,6 +227,21 @@ impl Worker {
         Ok(())
     }
 
+    /// Finds an exposure for what is seen.
+    fn expose(&self, wanted: &Wanted) {
+        let mut scene = self.scene.clone();
+        scene.sensor = wanted.sight.sensor.clone();
+        let found = AutoExposure::of(&scene, &wanted.sight.film);
+        let text = found.in_words();
+        match found.warning {
+            Some(warning) => self.say(format!("warning: {warning}")),
+            None => {
+                (self.send)(News::Exposed(found.stops));
+                self.say(text);
+            }
+        }
+    }
+
     /// The lane whose film is shown.
     fn lane(&mut self, shown: Shown) -> Option<&mut Lane> {
         match Subject::of(shown) {
@@ -248,7 +265,7 @@ impl Worker {
         let Some(lane) = self.lane(wanted.shown) else { return };
         let Some(progress) = lane.progress() else { return };
         let Some((film, before)) = lane.films() else { return };
-        let developed = develop(film, before, wanted.shown, wanted.exposure);
+        let developed = develop(film, before, wanted.shown, wanted.development);
         let window = (wanted.sight.film.width, wanted.sight.film.height);
         let figures = figures(&progress, wanted.shown, developed.size, window, &tracer);
         (self.send)(News::Frame(Frame { developed, figures }));

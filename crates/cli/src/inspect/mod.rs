@@ -6,7 +6,7 @@ mod tables;
 use self::tables::{luminaires, materials, meshes, objects, point, rgb, textures};
 use crate::shared::counts::pixels;
 use crate::shared::film_size::FilmSize;
-use crate::shared::foreseen::warn_of_the_picture;
+use crate::shared::foreseen::{Foreseen, foresee};
 use crate::shared::printing::print;
 use crate::shared::table::table;
 use luminaire::film::Demand;
@@ -51,19 +51,20 @@ pub struct Options {
 /// Loads a scene and prints what is in it.
 pub fn run(options: &Options) -> Result<ExitCode> {
     let mut scene = scene::load(&options.scene)?;
+    let own_film = scene.film;
     FilmSize { width: options.width, height: options.height, largest: LARGEST_SIDE }.apply(&mut scene.film);
     let FilmSettings { width, height, .. } = scene.film;
     // What no memory of this machine holds is told, and what nothing can hold is refused as `render` does.
     if let Err(error @ Error::Usage(_)) = (Demand { width, height, ..Demand::default() }).check() {
         return Err(error);
     }
-    warn_of_the_picture(&mut scene);
-    print(&describe(&scene))?;
+    let foreseen = foresee(&mut scene, &own_film);
+    print(&describe(&scene, &foreseen))?;
     Ok(ExitCode::SUCCESS)
 }
 
 /// The whole report on a scene.
-fn describe(scene: &Scene) -> String {
+fn describe(scene: &Scene, foreseen: &Foreseen) -> String {
     let (low, high) = scene.tight_bounds();
     let (low, high) = (low + scene.origin, high + scene.origin);
     let stored: usize = scene.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
@@ -99,8 +100,12 @@ fn describe(scene: &Scene) -> String {
             row(
                 "render",
                 format!(
-                    "{} samples a pixel, {:?} sampler, seed {}, exposure {}",
-                    scene.settings.spp, scene.settings.sampler, scene.settings.seed, scene.settings.exposure
+                    "{} samples a pixel, {:?} sampler, seed {}, {}, tone {}",
+                    scene.settings.spp,
+                    scene.settings.sampler,
+                    scene.settings.seed,
+                    foreseen.found.clone().unwrap_or_else(|| format!("exposure {}", foreseen.development.exposure)),
+                    foreseen.development.tone.name()
                 ),
             ),
             row("kernel", KernelModel::of(scene).to_string()),
@@ -295,7 +300,8 @@ mod tests {
             warnings: vec!["one.obj:3: something odd".into()],
             files: vec![],
         };
-        let text = describe(&scene);
+        let foreseen = Foreseen { lacks_light: false, development: 1.5.into(), found: None };
+        let text = describe(&scene, &foreseen);
         for part in [
             "22 in 22 objects; 1 stored in 1 mesh",
             "64 x 48 pixels, blackman-harris filter of radius 1.5",

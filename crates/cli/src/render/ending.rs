@@ -22,15 +22,7 @@ pub fn finish(mut outcome: Outcome, pictures: &[PathBuf], notes: Notes) -> Resul
     // An unfinished part is not written where the checkpoint holds it: somebody might take the file for the whole part.
     let nothing = rendered.progress.samples == 0 || unfinished_part && outcome.saved.is_some();
     let written = if nothing { &[] } else { pictures };
-    outcome.warnings = [
-        losses(rendered, outcome.scene),
-        pixels_without_samples(rendered, written),
-        black(&outcome, written),
-        reached_without_fireflies(rendered),
-    ]
-    .into_iter()
-    .flatten()
-    .collect();
+    outcome.warnings = warnings(&outcome, written);
     outcome.warnings.iter().for_each(|warning| notes.warn(warning));
 
     let done = interrupts::hold_off(|| outputs::write(&mut outcome, written));
@@ -83,6 +75,18 @@ pub fn finish(mut outcome: Outcome, pictures: &[PathBuf], notes: Notes) -> Resul
     }
 }
 
+/// What there is to warn of a picture that is written to these files.
+pub fn warnings(outcome: &Outcome, written: &[PathBuf]) -> Vec<String> {
+    let rendered = &outcome.rendered;
+    let all = [
+        losses(rendered, outcome.scene),
+        pixels_without_samples(rendered, written),
+        black(outcome, written),
+        reached_without_fireflies(rendered),
+    ];
+    all.into_iter().flatten().collect()
+}
+
 /// Samples that are left out, and how one of them can be replayed.
 fn losses(rendered: &Rendered, scene: &Scene) -> Option<String> {
     if rendered.dropped == 0 {
@@ -114,11 +118,11 @@ fn pixels_without_samples(rendered: &Rendered, written: &[PathBuf]) -> Option<St
 /// A picture that is black, or that a PNG of it would show so.
 fn black(outcome: &Outcome, written: &[PathBuf]) -> Option<String> {
     let Outcome { rendered, scene, .. } = outcome;
-    let dark = outcome.lacks_light || scene.dark_because().is_some();
+    let dark = outcome.foreseen.lacks_light || scene.dark_because().is_some();
     let is_png = |path: &PathBuf| matches!(Format::of(path), Ok(Format::Png));
     error_line::black_picture(&rendered.film, dark).or_else(|| {
         let shown = written.iter().any(is_png);
-        shown.then(|| error_line::black_at_exposure(&rendered.film, scene.settings.exposure)).flatten()
+        shown.then(|| error_line::black_when_developed(&rendered.film, outcome.foreseen.development)).flatten()
     })
 }
 

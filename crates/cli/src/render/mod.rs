@@ -3,12 +3,14 @@
 mod checkpoint;
 mod ending;
 mod failing_tracer;
+mod frame_name;
 mod options;
 mod outcome;
 mod outputs;
 mod progress;
 mod replay;
 mod seconds;
+mod sequence;
 mod stats;
 mod summary;
 #[cfg(feature = "shaderc")]
@@ -22,16 +24,19 @@ use self::options::LARGEST_SIDE;
 use self::outcome::Outcome;
 use self::progress::Reporter;
 use self::seconds::Seconds;
+use self::sequence::Sequence;
 use crate::shared::backend_name;
 use crate::shared::film_size::FilmSize;
-use crate::shared::foreseen::warn_of_the_picture;
+use crate::shared::foreseen::{Foreseen, foresee};
 use crate::shared::interrupts;
 use crate::shared::outputs::Outputs;
 use crate::shared::printing::Notes;
+use crate::shared::tone_name::ToneName;
 use crate::shared::values::Pixel;
 use luminaire::backend::{self, Renderer, Request};
-use luminaire::render::{End, Limits, Rendered, aovs, resume};
-use luminaire::scene::{self, FilmSettings, Scene};
+use luminaire::film::Aovs;
+use luminaire::render::{End, Limits, Rendered, Tracer, aovs, resume};
+use luminaire::scene::{self, Exposure, FilmSettings, Scene};
 use luminaire::{Error, Result};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -45,11 +50,17 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     options.estimator.check()?;
     let mut outputs = Outputs::default();
     let mut pictures = vec![];
+    let mut sequence = None;
     let mut locks = vec![];
     // Before locks are taken, which an interrupt would leave.
     interrupts::listen(notes)?;
     if options.pixel.is_none() {
-        pictures = outputs::pictures(options, &mut outputs)?;
+        if let Some(frames) = options.turntable {
+            sequence::check(options, frames)?;
+            sequence = Some(Sequence::of(options, frames, &mut outputs)?);
+        } else {
+            pictures = outputs::pictures(options, &mut outputs)?;
+        }
         outputs::declare_others(options, &mut outputs)?;
         checkpoint::declare(options, &mut outputs)?;
         locks = checkpoint::lock(options, notes)?;
@@ -61,11 +72,16 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     let mut scene = scene::load(&options.scene)?;
     seconds.load = start.elapsed().as_secs_f64();
     outputs.check(scene.files.iter().map(|path| ("a file of the scene", &**path)))?;
+    let own_film = scene.film;
     change(&mut scene, options)?;
-    let lacks_light = warn_of_the_picture(&mut scene);
+    let foreseen = foresee(&mut scene, &own_film);
     scene.warnings.iter().for_each(|warning| notes.warn(warning));
+    foreseen.found.iter().for_each(|found| notes.note(found));
 
-    let render = || trace(options, &scene, lacks_light, &request, seconds, &pictures, notes);
+    if let Some(sequence) = &sequence {
+        return sequence::run(sequence, options, &scene, &foreseen, &request, seconds, notes);
+    }
+    let render = || trace(options, &scene, &foreseen, &request, seconds, &pictures, notes);
     #[cfg(feature = "shaderc")]
     if options.watch {
         return watch::repeat(&interrupts::STOP, &render);
@@ -81,6 +97,11 @@ fn change(scene: &mut Scene, options: &Options) -> Result<()> {
     options.estimator.apply(scene)?;
     scene.settings.seed = options.seed.unwrap_or(scene.settings.seed);
     scene.settings.exposure = options.exposure.unwrap_or(scene.settings.exposure);
+    scene.settings.tone = options.tone.map_or(scene.settings.tone, ToneName::tone);
+    if options.pixel.is_some() {
+        // Nothing is shown.
+        scene.settings.exposure = Exposure::Stops(0.0);
+    }
     let FilmSettings { width, height, .. } = scene.film;
     outputs::demand(options, &scene.film).check()?;
     outputs::check_error_map(options, limits(options, scene).spp, " (the scene says `spp = 1`)")?;
@@ -96,7 +117,7 @@ fn change(scene: &mut Scene, options: &Options) -> Result<()> {
 fn trace(
     options: &Options,
     scene: &Scene,
-    lacks_light: bool,
+    foreseen: &Foreseen,
     request: &Request,
     mut seconds: Seconds,
     pictures: &[PathBuf],
@@ -139,16 +160,7 @@ fn trace(
     let checkpoint = checkpoint.filter(|_| rendered.progress.samples > 0);
     let saved = checkpoint.map(|checkpoint| checkpoint.save(&rendered));
     // Not after a failure, for the device would fail again, nor after an interrupt, which should end the run soon.
-    let mut layers = None;
-    if options.wants_aovs() && !matches!(rendered.end, End::Failed(_) | End::Stopped) {
-        let size = (rendered.film.width, rendered.film.height);
-        match aovs(&mut tracer, size, rendered.film.most_samples(), &interrupts::STOP) {
-            // Samples are complete then, and the files are written without layers.
-            Ok(None) => rendered.end = End::Stopped,
-            Ok(found) => layers = found,
-            Err(error) => rendered.end = End::Failed(error),
-        }
-    }
+    let layers = layers(options, &mut rendered, &mut tracer);
     seconds.render = rendered.progress.seconds;
     seconds.device = rendered.device_seconds;
     let outcome = Outcome {
@@ -158,11 +170,26 @@ fn trace(
         rendered,
         aovs: layers,
         saved,
-        lacks_light,
+        foreseen,
         warnings: vec![],
         seconds,
     };
     ending::finish(outcome, pictures, notes)
+}
+
+/// What the camera sees first, where a file is to hold it and the render has come to its end; an interrupt or a failure meanwhile is the render's.
+fn layers(options: &Options, rendered: &mut Rendered, tracer: &mut dyn Tracer) -> Option<Aovs> {
+    if !options.wants_aovs() || matches!(rendered.end, End::Failed(_) | End::Stopped) {
+        return None;
+    }
+    let size = (rendered.film.width, rendered.film.height);
+    match aovs(tracer, size, rendered.film.most_samples(), &interrupts::STOP) {
+        // Samples are complete then, and the files are written without layers.
+        Ok(None) => rendered.end = End::Stopped,
+        Ok(found) => return found,
+        Err(error) => rendered.end = End::Failed(error),
+    }
+    None
 }
 
 /// Notes which backend renders on which device, and why.

@@ -4,7 +4,9 @@ use crate::shared::backend_name::BackendName;
 use crate::shared::counts::{pixels, samples, seed};
 use crate::shared::estimator::EstimatorOptions;
 use crate::shared::exit_codes::EXIT_CODES;
-use crate::shared::values::{Pixel, noise, pixel, range, seconds, stops};
+use crate::shared::tone_name::{ToneName, exposure};
+use crate::shared::values::{Pixel, frames, noise, pixel, range, seconds, turntable};
+use luminaire::scene::Exposure;
 use std::ops::Range;
 use std::path::PathBuf;
 
@@ -14,6 +16,8 @@ Examples:
       cornell.png in the current folder, with what the scene file says
   luminaire render model.obj -o out/model.png -o out/model.exr --width 1920 --spp 256
       two files of one render; the height follows from the scene's aspect ratio
+  luminaire render model.obj --exposure auto --tone agx
+      as bright as its surfaces want it, and with soft highlights, as film has them
   luminaire render model.obj --time 30 --backend compute-bvh --stats run.json
       as many samples as 30 seconds allow, and the figures of the run
   luminaire render model.obj --noise 0.02 --time 600 --error-map noise.png
@@ -22,6 +26,8 @@ Examples:
       goes on where it was, however it ended; the same command again after Ctrl-C, a crash or a power cut
   luminaire render model.obj --samples 1024..2048 -o part-1.exr
       one part of four, on one machine of four; `luminaire merge part-*.exr -o model.exr` joins them
+  luminaire render model.obj --turntable 120 -o frame-%04d.png
+      a turn around the model: frame-0000.png to frame-0119.png; the same command again keeps those that are finished
 
 ";
 
@@ -29,7 +35,8 @@ Examples:
 pub const LARGEST_SIDE: u32 = 65536;
 
 /// Options that mean nothing where nothing is rendered.
-const REPLAY_CONFLICTS: [&str; 7] = ["output", "error_map", "aov", "stats", "checkpoint", "checkpoint_every", "resume"];
+const REPLAY_CONFLICTS: [&str; 8] =
+    ["output", "error_map", "aov", "stats", "checkpoint", "checkpoint_every", "resume", "turntable"];
 
 /// What to render, and how.
 #[derive(Debug, clap::Args)]
@@ -41,9 +48,13 @@ pub struct Options {
     /// A file to write; .png, .exr or .hdr says the format. May be given several times [default: <SCENE>.png here].
     #[arg(short, long, value_name = "FILE", help_heading = "Output")]
     pub output: Vec<PathBuf>,
-    /// Exposure of a PNG in stops: radiance times 2^STOPS [default: the scene's].
-    #[arg(long, value_name = "STOPS", allow_negative_numbers = true, value_parser = stops, help_heading = "Output")]
-    pub exposure: Option<f32>,
+    /// Exposure of a PNG in stops: radiance times 2^STOPS; `auto` finds one from the scene, the same at every size and on every backend
+    /// [default: the scene's].
+    #[arg(long, value_name = "STOPS|auto", allow_negative_numbers = true, value_parser = exposure, help_heading = "Output")]
+    pub exposure: Option<Exposure>,
+    /// Tone curve of a PNG, after the exposure [default: the scene's].
+    #[arg(long, value_name = "NAME", help_heading = "Output")]
+    pub tone: Option<ToneName>,
     /// Write a heat map of the estimated relative error of every pixel.
     #[arg(long, value_name = "FILE.png", help_heading = "Output")]
     pub error_map: Option<PathBuf>,
@@ -98,6 +109,14 @@ pub struct Options {
     /// Go on from the checkpoint, on any backend or device; if there is none yet, start. Also gives a finished render more samples.
     #[arg(long, requires = "checkpoint", help_heading = "Long renders")]
     pub resume: bool,
+
+    /// Render N pictures of the camera turning once around the vertical axis through its target, counter-clockwise as seen from above; the first
+    /// one is the scene's own. -o frame-%04d.png says where their numbers stand. Pictures that are finished are kept by the same command.
+    #[arg(long, value_name = "N", value_parser = turntable, help_heading = "Sequences")]
+    pub turntable: Option<u32>,
+    /// Render only frames A to B - 1 of the turn, as one of several machines.
+    #[arg(long, value_name = "A..B", value_parser = frames, requires = "turntable", help_heading = "Sequences")]
+    pub frames: Option<Range<u32>>,
 
     /// Trace one sample of one pixel again and print its path, instead of rendering; with --sample. What ends a render (--spp, --samples, ...) changes
     /// nothing about it.
@@ -159,6 +178,8 @@ mod tests {
             ["--height", "65537"],
             ["--seed", "-1"],
             ["--exposure", "nan"],
+            ["--exposure", "automatic"],
+            ["--tone", "filmic"],
             ["--integrator", "path"],
             ["--estimator", "photon"],
             ["--light-sampling", "some"],
@@ -168,13 +189,23 @@ mod tests {
             ["--albedo-threshold", "1.5"],
             ["--sampler", "some"],
             ["--backend", "gpu"],
+            ["--turntable", "0"],
+            ["--turntable", "10001"],
+            ["--frames", "0..1"],
             ["--max-bounces", "1000001"],
         ] {
             assert_eq!(render(&bad).unwrap_err(), 2, "{bad:?}");
         }
-        for good in
-            [["--spp", "4294967295"], ["--time", "0.5"], ["--exposure", "-2"], ["--noise", "1"], ["--max-bounces", "0"]]
-        {
+        for good in [
+            ["--spp", "4294967295"],
+            ["--time", "0.5"],
+            ["--exposure", "-2"],
+            ["--exposure", "auto"],
+            ["--tone", "agx"],
+            ["--turntable", "120"],
+            ["--noise", "1"],
+            ["--max-bounces", "0"],
+        ] {
             assert!(render(&good).is_ok(), "{good:?}");
         }
     }

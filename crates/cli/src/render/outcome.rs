@@ -2,6 +2,7 @@
 
 use super::options::Options;
 use super::seconds::Seconds;
+use crate::shared::foreseen::Foreseen;
 use luminaire::Result;
 use luminaire::backend::Renderer;
 use luminaire::film::Aovs;
@@ -22,8 +23,8 @@ pub struct Outcome<'a> {
     pub aovs: Option<Aovs>,
     /// Whether the checkpoint could be saved; none: there is no `--checkpoint`, or nothing to save.
     pub saved: Option<Result<()>>,
-    /// Whether a warning tells of light that no estimator finds.
-    pub lacks_light: bool,
+    /// What was foreseen of the picture.
+    pub foreseen: &'a Foreseen,
     /// What there is to warn of, besides the scene's own warnings.
     pub warnings: Vec<String>,
     /// How long everything took until now.

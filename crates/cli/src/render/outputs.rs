@@ -10,6 +10,7 @@ use luminaire::part::Provenance;
 use luminaire::scene::FilmSettings;
 use luminaire::{Error, Result, files, part, picture};
 use luminaire_measure::heat_map;
+use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -114,21 +115,36 @@ pub fn write(outcome: &mut Outcome, pictures: &[PathBuf]) -> Result<()> {
     }
     outcome.seconds.write = start.elapsed().as_secs_f64();
     if let Some(path) = &outcome.options.stats {
-        let stats = Stats::new(outcome, pictures);
-        let text = serde_json::to_string_pretty(&stats).map_err(|e| Error::write(path, e))?;
-        files::save_text(path, &(text + "\n"))?;
+        save_stats(path, &Stats::new(outcome, pictures))?;
     }
     Ok(())
+}
+
+/// Writes the pictures of a frame, each with the mark of its format.
+pub fn write_frame(outcome: &Outcome, pictures: &[PathBuf], mark: impl Fn(picture::Format) -> String) -> Result<()> {
+    for path in pictures {
+        let aovs = outcome.aovs.as_ref().filter(|_| outcome.options.aov);
+        let mark = mark(picture::Format::of(path)?);
+        outcome.rendered.film.save_marked(path, outcome.foreseen.development, aovs, &mark)?;
+    }
+    Ok(())
+}
+
+/// Saves the figures of a run as JSON.
+pub fn save_stats(path: &Path, figures: &impl Serialize) -> Result<()> {
+    let text = serde_json::to_string_pretty(figures).map_err(|e| Error::write(path, e))?;
+    files::save_text(path, &(text + "\n"))
 }
 
 /// Writes the pictures, the error map and the denoised picture.
 fn write_pictures(outcome: &Outcome, pictures: &[PathBuf]) -> Result<()> {
     let Outcome { options, scene, rendered, .. } = outcome;
+    let development = outcome.foreseen.development;
     let provenance = options.samples.as_ref().map(|_| Provenance::of(scene));
     let save = |path: &PathBuf| match (&provenance, &outcome.aovs, picture::Format::of(path)?) {
         (Some(provenance), _, picture::Format::Exr) => part::save(path, rendered, provenance),
         (_, Some(aovs), picture::Format::Exr) if options.aov => rendered.film.save_with_aovs(path, aovs),
-        _ => rendered.film.save(path, scene.settings.exposure),
+        _ => rendered.film.save(path, development),
     };
     // All are tried before an error is returned: if one cannot be written, the others still are.
     let saved: Vec<_> = pictures.iter().map(save).collect();
@@ -141,7 +157,7 @@ fn write_pictures(outcome: &Outcome, pictures: &[PathBuf]) -> Result<()> {
     #[cfg(feature = "denoise")]
     if let (Some(path), Some(aovs)) = (&options.denoised, &outcome.aovs) {
         let picture = luminaire::denoise::denoise(&rendered.film, aovs)?;
-        picture::save_linear(path, width, height, &picture, scene.settings.exposure)?;
+        picture::save_linear(path, width, height, &picture, development)?;
     }
     Ok(())
 }

@@ -2,6 +2,7 @@
 
 use super::outcome::Outcome;
 use super::seconds::Seconds;
+use luminaire::picture::Tone;
 use luminaire::render::End;
 use serde::Serialize;
 
@@ -51,6 +52,11 @@ pub struct Stats<'a> {
     black_share: Option<f64>,
     /// Whether one of the warnings tells of light that no estimator finds: then `error` is of the rest.
     lacks_light: bool,
+    /// Of a PNG, in stops.
+    exposure: f32,
+    /// Whether the exposure was `auto`.
+    exposure_found: bool,
+    tone: Tone,
     outputs: Vec<String>,
     /// What the loader had to guess, drop or scale, what the picture lacks, and what became of the render.
     warnings: Vec<&'a str>,
@@ -101,7 +107,10 @@ impl<'a> Stats<'a> {
             samples_per_second: if progress.seconds > 0.0 { progress.samples as f64 / progress.seconds } else { 0.0 },
             dropped: rendered.dropped,
             black_share: rendered.film.black_share(),
-            lacks_light: outcome.lacks_light,
+            lacks_light: outcome.foreseen.lacks_light,
+            exposure: outcome.foreseen.development.exposure,
+            exposure_found: outcome.foreseen.found.is_some(),
+            tone: outcome.foreseen.development.tone,
             outputs: outputs.iter().map(|path| path.display().to_string()).collect(),
             warnings: scene.warnings.iter().chain(&outcome.warnings).map(String::as_str).collect(),
         }

@@ -34,7 +34,7 @@ pub fn summary(outcome: &Outcome, written: &[PathBuf]) -> String {
         text += &format!("{}: the figures of this run\n", path.display());
     }
     if progress.samples > 0 {
-        text += &error_line(film, progress.error, outcome.lacks_light);
+        text += &error_line(film, progress.error, outcome.foreseen.lacks_light);
     }
     if let (Some(limit), false) = (progress.limits.noise, matches!(rendered.end, End::Noise)) {
         text += &format!("--noise {limit} was not reached\n");

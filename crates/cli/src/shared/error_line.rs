@@ -1,6 +1,7 @@
 //! What is said of a picture's estimated error when it is finished, and of light that it has not found.
 
 use luminaire::film::{ErrorEstimate, Film, relative_in_words};
+use luminaire::picture::{Development, to_srgb8};
 use luminaire::sampling::PARTS;
 
 /// From this share of black pixels on a picture probably lacks what it was meant to show.
@@ -82,19 +83,18 @@ pub fn black_picture(film: &Film, dark: bool) -> Option<String> {
     })
 }
 
-/// A warning of a PNG that shows nothing at this exposure in stops, though there is light; none if it shows something.
-pub fn black_at_exposure(film: &Film, exposure: f32) -> Option<String> {
-    /// Half of the least number of sRGB, 1 of 255, is shown as black.
-    const LEAST_SHOWN: f64 = 0.5 / 255.0 / 12.92;
+/// A warning of a PNG that shows nothing when it is developed in this way, though there is light; none if it shows something.
+pub fn black_when_developed(film: &Film, development: Development) -> Option<String> {
     let largest = film.largest();
-    if largest == 0.0 || largest * f64::from(exposure).exp2() >= LEAST_SHOWN {
+    if largest == 0.0 || to_srgb8(&film.to_linear(), development).into_iter().any(|code| code > 0) {
         return None;
     }
+    let exposure = development.exposure;
     // Its half-power mean becomes a middle grey.
     let better = (0.2 / film.brightness().half_power_mean()).log2().floor().min(64.0);
     Some(format!(
         "a PNG shows nothing of this picture at an exposure of {exposure} stops: its largest radiance is {largest:.1e}; try --exposure {better}, \
-         or an EXR file"
+         --exposure auto, or an EXR file"
     ))
 }
 
@@ -166,9 +166,9 @@ mod tests {
     #[test]
     fn what_a_png_would_not_show_is_found_by_its_exposure() {
         let dim = film(16, 40, 1e-6);
-        let said = black_at_exposure(&dim, 0.0).unwrap();
+        let said = black_when_developed(&dim, 0.0.into()).unwrap();
         assert!(said.contains("1.0e-6") && said.contains("--exposure 17"), "{said}");
-        assert_eq!(black_at_exposure(&dim, 17.0), None);
-        assert_eq!(black_at_exposure(&film(16, 0, 1.0), 0.0), None, "black at any exposure");
+        assert_eq!(black_when_developed(&dim, 17.0.into()), None);
+        assert_eq!(black_when_developed(&film(16, 0, 1.0), 0.0.into()), None, "black at any exposure");
     }
 }

@@ -12,5 +12,6 @@ pub mod outputs;
 pub mod printing;
 pub mod relative_path;
 pub mod table;
+pub mod tone_name;
 pub mod units;
 pub mod values;

@@ -71,6 +71,24 @@ pub fn stops(text: &str) -> Result<f32, String> {
     }
 }
 
+/// Numbers of frames, as `A..B`.
+pub fn frames(text: &str) -> Result<Range<u32>, String> {
+    let expected =
+        "expected the numbers of the first frame and of the one after the last, for example 0..60 or 60..120";
+    range(text).map_err(|_| expected.to_owned())
+}
+
+/// How many frames a turn has.
+pub fn turntable(text: &str) -> Result<u32, String> {
+    match text.parse() {
+        Ok(frames) if (1..=MOST_FRAMES).contains(&frames) => Ok(frames),
+        _ => Err(format!("expected the number of frames of a whole turn, from 1 to {MOST_FRAMES}, for example 120")),
+    }
+}
+
+/// Five minutes and a half at 30 frames a second.
+const MOST_FRAMES: u32 = 10_000;
+
 /// Numbers of samples, as `A..B`.
 pub fn range(text: &str) -> Result<Range<u32>, String> {
     let pair = |between: &str| {

@@ -70,8 +70,8 @@ pub(super) const KEYS: &[Words] = &[
     ),
     (
         "film",
-        &["gamma", "tonemap", "tone_mapping", "tonemapper", "srgb"],
-        "a PNG is sRGB, without a curve of its own; brightness is `exposure` in [render]",
+        &["gamma", "srgb", "brightness", "iso", "imaging_ratio"],
+        "a PNG is sRGB by itself; how bright it is says `exposure` in [render], and by which curve `tone`",
     ),
     // [sensor]
     (
@@ -125,6 +125,33 @@ pub(super) const KEYS: &[Words] = &[
         "with kind = \"orthographic\", `height` says how much of the scene the picture shows",
     ),
     ("", &["type"], "write `kind` where there are kinds"),
+    (
+        "",
+        &[
+            "tonemap",
+            "tonemapping",
+            "tone_map",
+            "tone_mapping",
+            "tonemapper",
+            "tone_mapper",
+            "tone_curve",
+            "view_transform",
+            "viewtransform",
+            "filmic",
+            "agx",
+            "aces",
+            "look",
+            "color_management",
+            "colour_management",
+            "display_transform",
+        ],
+        "the tone curve is `tone` in [render]: \"srgb\" (none), \"agx\" or \"neutral\"",
+    ),
+    (
+        "",
+        &["auto_exposure", "autoexposure", "exposure_mode", "metering"],
+        "the exposure is found with `exposure = \"auto\"` in [render]",
+    ),
     // [render]
     (
         "",
@@ -161,7 +188,7 @@ pub(super) const KEYS: &[Words] = &[
         &["denoise", "denoiser", "denoised"],
         "that is said on the command line: --denoised, in a program that is built with it (`cargo build --release --features denoise`)",
     ),
-    ("render", &["gamma", "brightness", "ev", "stops", "iso"], "brightness is `exposure` in stops"),
+    ("render", &["gamma", "brightness", "ev", "stops", "iso"], "brightness is `exposure`, in stops or \"auto\""),
     // [integrator]
     ("integrator", &["name", "method", "preset", "mode"], "a stage of the lecture by its name is `estimator`"),
     (
@@ -404,5 +431,34 @@ pub(super) const NAMES: &[Words] = &[
         "filters with negative parts are not sampled: \"gaussian\" or \"blackman-harris\"",
     ),
     ("box", &["triangle", "linear", "bilinear"], "it is called \"tent\""),
+    (
+        "srgb",
+        &["standard", "none", "off", "linear", "raw", "gamma", "clamp", "default", "view", "display"],
+        "a PNG without a curve is \"srgb\"",
+    ),
+    (
+        "srgb",
+        &[
+            "filmic",
+            "aces",
+            "aces_filmic",
+            "film",
+            "hable",
+            "uncharted2",
+            "reinhard",
+            "punchy",
+            "log",
+            "auto",
+            "agx_base",
+            "blender",
+            "high_contrast",
+        ],
+        "the curve that is like film is \"agx\", as Blender has it",
+    ),
+    (
+        "srgb",
+        &["khronos", "pbr_neutral", "pbrneutral", "khronos_pbr_neutral", "commerce", "true_view"],
+        "it is called \"neutral\"",
+    ),
     ("simple", &["path", "pathtracer", "mis"], "the path tracer is \"default\""),
 ];

@@ -83,6 +83,7 @@ impl File<'_> {
             spp: file.render.spp.map_or(defaults.spp, |spp| spp.0),
             seed: file.render.seed.unwrap_or(defaults.seed),
             exposure: file.render.exposure.map_or(defaults.exposure, |exposure| exposure.0),
+            tone: file.render.tone.unwrap_or(defaults.tone),
             sampler: file.render.sampler.unwrap_or(defaults.sampler),
         };
         let (materials, textures) = loader.finish_materials(&objects);

@@ -4,7 +4,7 @@ use super::values::{
     Angle, Blades, Bounces, Colour, Eta, Exact, Exponent, Exposure, FilterRadius, Finite, Fov, MapOffset, MapScale,
     Matrix, NotNegative, Pixels, Positive, Probability, Samples, Triple, Unit,
 };
-use crate::scene::{AreaSampling, Directions, Extinction, Filter, LightSampling, Sampler};
+use crate::scene::{AreaSampling, Directions, Extinction, Filter, LightSampling, Sampler, Tone};
 use ::toml::Spanned;
 use serde::Deserialize;
 
@@ -95,6 +95,7 @@ pub(super) struct RenderTable {
     pub spp: Option<Samples>,
     pub seed: Option<u32>,
     pub exposure: Option<Exposure>,
+    pub tone: Option<Tone>,
     pub sampler: Option<Sampler>,
 }
 

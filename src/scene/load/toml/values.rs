@@ -112,10 +112,17 @@ pub(super) struct Fov(pub f32);
 #[serde(try_from = "f64")]
 pub(super) struct Exponent(pub f32);
 
-/// Stops.
+/// Stops, or that they are to be found.
 #[derive(Debug, Clone, Copy, Deserialize)]
-#[serde(try_from = "f64")]
-pub(super) struct Exposure(pub f32);
+#[serde(try_from = "StopsOrWord")]
+pub(super) struct Exposure(pub crate::scene::Exposure);
+
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "expected stops from -64 to 64, or \"auto\"")]
+enum StopsOrWord {
+    Stops(f64),
+    Word(String),
+}
 
 /// A finite number of at least 0.
 #[derive(Debug, Clone, Copy, Deserialize)]
@@ -322,10 +329,16 @@ impl TryFrom<i64> for Blades {
     }
 }
 
-impl TryFrom<f64> for Exposure {
+impl TryFrom<StopsOrWord> for Exposure {
     type Error = &'static str;
-    fn try_from(stops: f64) -> Checked<Self> {
-        (stops.abs() <= LARGEST_EXPOSURE).then_some(Exposure(stops as f32)).ok_or("expected stops from -64 to 64")
+    fn try_from(said: StopsOrWord) -> Checked<Self> {
+        match said {
+            StopsOrWord::Stops(stops) if stops.abs() <= LARGEST_EXPOSURE => {
+                Ok(Exposure(crate::scene::Exposure::Stops(stops as f32)))
+            }
+            StopsOrWord::Word(word) if word == "auto" => Ok(Exposure(crate::scene::Exposure::Auto)),
+            _ => Err("expected stops from -64 to 64, or \"auto\""),
+        }
     }
 }
 
