@@ -2,6 +2,7 @@
 
 use super::fit::{Eye, axes};
 use super::solid::Solid;
+use super::trial::Trial;
 use glam::{DMat3, DVec3};
 use std::f64::consts::TAU;
 
@@ -29,7 +30,7 @@ const NEAR: f64 = 0.35;
 /// Directions that are kept of each place, and views of all places, to be looked at more closely; and how much it counts what they show.
 const TURNS_KEPT: usize = 6;
 const VIEWS: usize = 80;
-const CONTENT: f64 = 3.0;
+const CONTENT: f64 = 2.0;
 /// The eye's part of the height between floor and ceiling.
 const EYE: f64 = 0.4;
 /// Half the horizontal field of view, if the picture is as wide as it is high or wider, and the most of half the vertical one; in degrees.
@@ -182,34 +183,12 @@ fn best(solid: &Solid, frame: DMat3, aspect: f64, air: &[&Place]) -> Option<Eye>
     views.truncate(VIEWS);
     let mut found: Option<(f64, Eye)> = None;
     for (score, eye) in views {
-        let score = score * (1.0 + CONTENT * content(solid, &eye));
+        let score = score * (1.0 + CONTENT * Trial::new(solid, &eye).content());
         if found.as_ref().is_none_or(|(best, _)| score > *best) {
             found = Some((score, eye));
         }
     }
     found.map(|(_, eye)| eye)
-}
-
-/// How much there is to see: the part of a small picture that differs from its neighbours by more than a wall does, in the middle more than at
-/// the edges.
-fn content(solid: &Solid, eye: &Eye) -> f64 {
-    const SIDE: usize = 24;
-    let at = |i: usize| (i as f64 + 0.513) / SIDE as f64 * 2.0 - 1.0;
-    let hits: Vec<_> =
-        (0..SIDE * SIDE).map(|ray| solid.meet(eye.position, eye.direction(at(ray % SIDE), at(ray / SIDE)))).collect();
-    let differ = |a: usize, b: usize| match (&hits[a], &hits[b]) {
-        (Some(a), Some(b)) => a.normal.dot(b.normal).abs() < 0.9 || (a.distance / b.distance).ln().abs() > 0.25,
-        (a, b) => a.is_some() != b.is_some(),
-    };
-    let (mut sum, mut weights) = (0.0, 0.0);
-    for ray in 0..SIDE * SIDE {
-        let (x, y) = (ray % SIDE, ray / SIDE);
-        let weight = 1.1 - at(x).abs().max(at(y).abs());
-        let edge = x > 0 && differ(ray, ray - 1) || y > 0 && differ(ray, ray - SIDE);
-        sum += weight * f64::from(u8::from(edge));
-        weights += weight;
-    }
-    sum / weights
 }
 
 /// A direction, turned from the front to the right, and tilted upwards.

@@ -8,11 +8,15 @@ mod fit;
 mod inside;
 mod outside;
 mod solid;
+mod strays;
 mod surroundings;
+mod trial;
 
 use self::fit::Eye;
 use self::outside::Subject;
-use self::solid::{Solid, for_points};
+use self::solid::{Solid, for_points, for_some_points};
+use self::surroundings::Bounds;
+use self::trial::Trial;
 use super::{Projection, Scene, Sensor};
 use glam::{DMat3, DVec3, Vec3};
 
@@ -22,6 +26,8 @@ const TRIAL_POINTS: usize = 4000;
 const MARGIN: f64 = 0.06;
 /// and around what has surroundings that belong to the picture.
 const WIDE_MARGIN: f64 = 0.14;
+/// In a room, or under a dome, what is not larger than this is looked at from near; the scene is 2 large.
+const TINY: f32 = 0.24;
 /// What fills less of the picture is hidden.
 const SEEN: f64 = 0.02;
 /// Eye point and target are kept apart by this part of their largest coordinate, so that they stay distinct in single precision.
@@ -44,7 +50,7 @@ impl Scene {
     pub fn first_view(&self, up: Vec3) -> FirstView {
         let aspect = f64::from(self.film.width) / f64::from(self.film.height);
         let frame = frame(up.as_dvec3());
-        let (eye, place, middle, unit) = match Solid::new(self) {
+        let (eye, place, middle, unit) = match Solid::new(self, strays::bounds_without(self)) {
             Some(solid) => {
                 let (eye, place) = find(self, &solid, frame, aspect);
                 (eye, place, solid.middle, solid.unit)
@@ -81,35 +87,47 @@ fn frame(up: DVec3) -> DMat3 {
 
 /// The camera, in the solid's coordinates, and where it stands.
 fn find(scene: &Scene, solid: &Solid, frame: DMat3, aspect: f64) -> (Eye, String) {
-    // All points within a box, or all.
-    let points = |bounds: Option<surroundings::Bounds>| {
+    let here = |p: DVec3| (p - solid.middle) / solid.unit;
+    let points = |bounds: Bounds| {
         move |visit: &mut dyn FnMut(DVec3)| {
             for_points(scene, &mut |p| {
-                let p = (p - solid.middle) / solid.unit;
-                if bounds.is_none_or(|bounds| bounds.contains(p)) {
-                    visit(p);
+                if bounds.contains(here(p)) {
+                    visit(here(p))
                 }
-            });
+            })
         }
     };
-    let all = points(None);
-    let trial_points = thinned(&all);
+    let bounds = Bounds { low: -solid.half, high: solid.half };
+    let all = points(bounds);
+    let mut trial_points = Vec::new();
+    let step = solid::points(scene).div_ceil(TRIAL_POINTS).max(1);
+    for_some_points(scene, step, &mut |p| {
+        if bounds.contains(here(p)) {
+            trial_points.push(here(p))
+        }
+    });
     let whole = Subject { solid, points: &trial_points, frame, aspect, margin: MARGIN };
     if let Some((towards, place)) = whole.open_side() {
         return (whole.eye(towards, &all), place.into());
     }
-    if let Some(eye) = inside::view(solid, frame, aspect) {
-        return (eye, "inside, as of a room".into());
+    let room = || inside::view(solid, frame, aspect).map(|eye| (eye, "inside, as of a room".into()));
+    let things = surroundings::within(solid);
+    let is_tiny = things.is_some_and(|bounds| bounds.extent() < TINY);
+    if let Some(room) = (!is_tiny).then(room).flatten() {
+        return room;
     }
-    if let Some(bounds) = surroundings::within(solid) {
-        let part = points(Some(bounds));
+    if let Some(bounds) = things {
+        let part = points(bounds);
         let trial_points = thinned(&part);
         let subject = Subject { solid, points: &trial_points, frame, aspect, margin: WIDE_MARGIN };
         let (towards, place) = subject.best_side();
         let eye = subject.eye(towards, &part);
-        if subject.shows(&eye, &bounds) >= SEEN {
+        if Trial::new(solid, &eye).shows(&bounds) >= SEEN {
             return (eye, format!("{place}, near what stands on a ground or before a backdrop"));
         }
+    }
+    if let Some(room) = is_tiny.then(room).flatten() {
+        return room;
     }
     let (towards, place) = whole.best_side();
     (whole.eye(towards, &all), place.into())

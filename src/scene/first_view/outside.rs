@@ -2,11 +2,11 @@
 
 use super::fit::{Eye, axes, fit};
 use super::solid::Solid;
-use super::surroundings::Bounds;
+use super::trial::Trial;
 use glam::{DMat3, DVec3};
 
-/// Rays of a trial picture, along each side.
-const TRIAL: usize = 32;
+/// How much it counts how much there is to see.
+const CONTENT: f64 = 1.0;
 /// How many times as much another side has to show as the first.
 const CLEARLY: f64 = 1.3;
 /// And one from below, where there may be a ground.
@@ -57,52 +57,23 @@ pub(super) struct Subject<'a> {
     pub margin: f64,
 }
 
-/// What a trial picture shows.
-struct Trial {
-    /// The area of what is seen, as if at the depth of the subject's middle.
-    area: f64,
-    /// The part of it that is seen from its outward side.
-    front: f64,
-}
-
-impl Trial {
-    /// Where no side is the outward one, all are alike.
-    fn score(&self) -> f64 {
-        self.area * (self.front + 0.1)
-    }
-}
-
 impl Subject<'_> {
-    fn tangents(&self) -> [f64; 2] {
-        let half = (0.5 * FOV).to_radians().tan();
-        if self.aspect >= 1.0 { [half * self.aspect, half] } else { [half, half / self.aspect] }
-    }
-
     /// The camera towards which a direction points, with all of `points` in the picture.
     pub(super) fn eye(&self, towards: DVec3, points: &impl Fn(&mut dyn FnMut(DVec3))) -> Eye {
-        fit(points, axes(-towards, self.frame.y_axis), self.tangents(), self.margin)
+        let half = (0.5 * FOV).to_radians().tan();
+        let tangents = if self.aspect >= 1.0 { [half * self.aspect, half] } else { [half, half / self.aspect] };
+        fit(points, axes(-towards, self.frame.y_axis), tangents, self.margin)
     }
 
-    /// A trial picture towards a direction.
+    /// A square trial picture from a direction.
     fn try_out(&self, towards: DVec3) -> Trial {
-        self.trial(&self.eye(towards, &|visit| self.points.iter().for_each(|p| visit(*p))))
+        let points = |visit: &mut dyn FnMut(DVec3)| self.points.iter().for_each(|p| visit(*p));
+        Trial::new(self.solid, &Subject { aspect: 1.0, ..*self }.eye(towards, &points))
     }
 
     fn towards(&self, azimuth: f64, elevation: f64) -> DVec3 {
         let (azimuth, elevation) = (azimuth.to_radians(), elevation.to_radians());
         self.frame * DVec3::new(elevation.cos() * azimuth.sin(), elevation.sin(), elevation.cos() * azimuth.cos())
-    }
-
-    fn trial(&self, eye: &Eye) -> Trial {
-        let (mut hits, mut front) = (0, 0);
-        for ray in 0..TRIAL * TRIAL {
-            if let Some(hit) = self.solid.meet(eye.position, trial_direction(eye, ray)) {
-                hits += 1;
-                front += usize::from(hit.front);
-            }
-        }
-        let area = eye.depth * eye.depth * hits as f64 / (TRIAL * TRIAL) as f64;
-        Trial { area, front: front as f64 / hits.max(1) as f64 }
     }
 
     /// The side that shows the most, the first of them unless another is clearly better.
@@ -111,23 +82,15 @@ impl Subject<'_> {
         let mut best: Option<(f64, DVec3, &'static str)> = None;
         for side in SIDES {
             let towards = self.towards(side.azimuth, (level + side.above).max(-BELOW));
-            let score = self.try_out(towards).score();
+            let trial = self.try_out(towards);
+            // Where no side is the outward one, all are alike.
+            let score = trial.area() * (trial.front() + 0.1) * (1.0 + CONTENT * trial.content());
             let needed = if side.above.is_finite() { CLEARLY } else { FROM_BELOW };
             if best.as_ref().is_none_or(|(so_far, ..)| score > needed * so_far) {
                 best = Some((score, towards, side.name));
             }
         }
         best.map(|(_, towards, name)| (towards, name)).expect("there are sides")
-    }
-
-    /// The part of a picture that shows what is within a box.
-    pub(super) fn shows(&self, eye: &Eye, bounds: &Bounds) -> f64 {
-        let shown = (0..TRIAL * TRIAL).filter(|ray| {
-            let direction = trial_direction(eye, *ray);
-            let hit = self.solid.meet(eye.position, direction);
-            hit.is_some_and(|hit| bounds.contains(eye.position + f64::from(hit.distance) * direction))
-        });
-        shown.count() as f64 / (TRIAL * TRIAL) as f64
     }
 
     /// From how far above, in degrees: tall things from little above, flat ones and landscapes from where one sees their extent.
@@ -163,7 +126,7 @@ impl Subject<'_> {
             if half[axis] > DEEP * (half.y * half[across]).sqrt() {
                 // A tunnel shows its inner side.
                 let beside = self.try_out(self.towards(30.0, 15.0));
-                if straight.front < 0.5 || beside.front > 0.5 {
+                if straight.front() < 0.5 || beside.front() > 0.5 {
                     continue;
                 }
             }
@@ -199,10 +162,4 @@ impl Subject<'_> {
         }
         [deep, stopped].map(|rays| rays as f64 / (PROBES * PROBES) as f64)
     }
-}
-
-/// The direction of a ray of a trial picture.
-fn trial_direction(eye: &Eye, ray: usize) -> DVec3 {
-    let at = |i: usize| (i as f64 + 0.513) / TRIAL as f64 * 2.0 - 1.0;
-    eye.direction(at(ray % TRIAL), at(ray / TRIAL))
 }

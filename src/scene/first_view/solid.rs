@@ -13,6 +13,8 @@ use std::hash::{BuildHasherDefault, Hasher};
 const EXACT: u64 = 150_000;
 /// Of what is simplified at most so many triangles are kept.
 const KEPT: usize = 200_000;
+/// The last points of the lattice, where strays go.
+const REACH: Vec3A = Vec3A::splat(4000.0);
 /// With fewer than so many left, what is simplified has lost too much.
 const FEW: usize = 1000;
 /// Triangles that are visited before instances are taken for their boxes, and beyond that, before some are left out.
@@ -38,13 +40,13 @@ pub(super) struct Hit {
     pub triangle: u32,
 }
 
-/// The shape of a scene, mapped so that its bounds are within -1 to 1, the larger extent from -1 to 1.
+/// The shape of a scene, mapped so that its bounds are within -1 to 1, and the largest extent is from -1 to 1. Strays are beyond that.
 pub(super) struct Solid {
     /// What the middle of the bounds is in the scene.
     pub middle: DVec3,
     /// A unit here is so long in the scene.
     pub unit: f64,
-    /// Half the extents of the bounds.
+    /// Half the extents of the bounds, without strays.
     pub half: Vec3A,
     triangles: Vec<RtTriangle>,
     /// By triangle: light passes it.
@@ -53,9 +55,8 @@ pub(super) struct Solid {
 }
 
 impl Solid {
-    /// None if the scene has no extent.
-    pub(super) fn new(scene: &Scene) -> Option<Self> {
-        let (low, high) = bounds(scene);
+    /// What lies within bounds, and all else, too; none if nothing has any extent.
+    pub(super) fn new(scene: &Scene, (low, high): (DVec3, DVec3)) -> Option<Self> {
         let (middle, unit) = (0.5 * (low + high), 0.5 * (high - low).max_element());
         if !(unit > 0.0 && unit.is_finite()) {
             return None;
@@ -63,7 +64,7 @@ impl Solid {
         let mut kept: Vec<Facet> = Vec::new();
         let to_here = |p: DVec3| Vec3A::from(((p - middle) / unit).as_vec3());
         if scene.triangle_count() <= EXACT {
-            visit(scene, unit, &mut |corners, clear| kept.push((corners.map(to_here), clear)));
+            for_triangles(scene, unit, &mut |corners, clear| kept.push((corners.map(to_here), clear)));
         } else {
             kept = simplified(scene, unit, &to_here);
         }
@@ -131,30 +132,46 @@ impl Solid {
     }
 }
 
-/// The bounds of all vertices, not of the boxes around the meshes.
-fn bounds(scene: &Scene) -> (DVec3, DVec3) {
-    let mut bounds = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    for_points(scene, &mut |p| bounds = (bounds.0.min(p), bounds.1.max(p)));
-    bounds
-}
-
 /// Visits the vertices of all instances; of instances that are too many, the corners of their boxes.
 pub(super) fn for_points(scene: &Scene, visit: &mut impl FnMut(DVec3)) {
-    let count: u64 = scene.objects.iter().map(|o| scene.meshes[o.mesh as usize].positions.len() as u64).sum();
+    for_some_points(scene, 1, visit);
+}
+
+/// Visits each so manieth of the points.
+pub(super) fn for_some_points(scene: &Scene, step: usize, visit: &mut impl FnMut(DVec3)) {
+    let in_boxes = vertices(scene) > VISITED;
     let boxes: Vec<_> = scene.meshes.iter().map(|mesh| mesh.bounds()).collect();
+    let mut skip = 0;
     for object in &scene.objects {
         let (mesh, to_world) = (&scene.meshes[object.mesh as usize], widen(object.object_to_world));
-        if count <= VISITED {
-            mesh.positions.iter().for_each(|p| visit(to_world.transform_point3(p.as_dvec3())));
-        } else {
+        if in_boxes {
             let (low, high) = boxes[object.mesh as usize];
-            box_corners(low, high, &to_world).into_iter().for_each(&mut *visit);
+            every(step, &mut skip, &box_corners(low, high, &to_world), |p| visit(*p));
+        } else {
+            every(step, &mut skip, &mesh.positions, |p| visit(to_world.transform_point3(p.as_dvec3())));
         }
     }
 }
 
+/// Visits each so manieth item, beginning with the one after `skip`, which afterwards says the same of the next items.
+fn every<T>(step: usize, skip: &mut usize, items: &[T], visit: impl FnMut(&T)) {
+    items.iter().skip(*skip).step_by(step).for_each(visit);
+    let rest = items.len().saturating_sub(*skip);
+    *skip = if rest > 0 { (step - rest % step) % step } else { *skip - items.len() };
+}
+
+/// How many points [`for_points`] visits.
+pub(super) fn points(scene: &Scene) -> usize {
+    let vertices = vertices(scene);
+    if vertices > VISITED { 8 * scene.objects.len() } else { vertices as usize }
+}
+
+fn vertices(scene: &Scene) -> u64 {
+    scene.objects.iter().map(|o| scene.meshes[o.mesh as usize].positions.len() as u64).sum()
+}
+
 /// Visits the corners of triangles, in the scene, counter-clockwise as seen from the outward side: of all triangles, if they are not too many.
-fn visit(scene: &Scene, unit: f64, visit: &mut impl FnMut([DVec3; 3], bool)) {
+pub(super) fn for_triangles(scene: &Scene, unit: f64, visit: &mut impl FnMut([DVec3; 3], bool)) {
     let all = scene.triangle_count();
     let boxes: Vec<_> = scene.meshes.iter().map(|mesh| mesh.bounds()).collect();
     let is_small = |object: &crate::scene::Object, to_world: &DAffine3| {
@@ -212,14 +229,14 @@ fn box_corners(low: Vec3, high: Vec3, to_world: &DAffine3) -> [DVec3; 8] {
 /// until they are few enough.
 fn simplified(scene: &Scene, unit: f64, to_here: &impl Fn(DVec3) -> Vec3A) -> Vec<Facet> {
     let mut lattice = Lattice { steps: LATTICE, kept: Vec::new(), seen: HashSet::default() };
-    visit(scene, unit, &mut |corners, clear| lattice.add((corners.map(to_here), clear)));
+    for_triangles(scene, unit, &mut |corners, clear| lattice.add((corners.map(to_here), clear)));
     if lattice.kept.len() >= FEW {
         return lattice.kept;
     }
     // A cloud of specks: some of them stand for all.
     let step = (scene.triangle_count().min(VISITED) as usize).div_ceil(KEPT).max(1);
     let (mut specks, mut number) = (Vec::new(), 0);
-    visit(scene, unit, &mut |corners, clear| {
+    for_triangles(scene, unit, &mut |corners, clear| {
         if number % step == 0 {
             specks.push((corners.map(to_here), clear));
         }
@@ -237,12 +254,12 @@ struct Lattice {
 
 impl Lattice {
     fn add(&mut self, (corners, clear): Facet) {
-        let mut points = corners.map(|p| (p * self.steps).round());
+        let mut points = corners.map(|p| (p * self.steps).round().clamp(-REACH, REACH));
         let [a, b, c] = points;
         if (b - a).cross(c - a) == Vec3A::ZERO {
             return;
         }
-        // Fourteen bits a coordinate.
+        // Fourteen bits a coordinate, which is at most half as large as that.
         let key = |p: Vec3A| p.to_array().iter().fold(0, |key, x| key << 14 | (x + f32::from(1u16 << 12)) as u64);
         // The same triangle may begin anywhere; the other way round it is another one.
         let first = (0..3).min_by_key(|i| key(points[*i])).unwrap_or(0);
