@@ -295,6 +295,46 @@ fn a_thing_before_a_backdrop_is_seen_from_before_it_and_near() {
 }
 
 #[test]
+fn bodies_that_reach_over_the_scene_are_no_backdrop() {
+    let mut scene = scene();
+    block(&mut scene, [-0.4, -0.4, -5.0], [0.4, 0.4, 5.0], false);
+    block(&mut scene, [-5.0, -0.05, -1.0], [5.0, 0.05, 1.0], false);
+    put(&mut scene, icosphere(3), Affine3A::from_translation(Vec3::new(0.0, 0.5, -4.0)));
+    fills(&scene, &view(&scene).0);
+}
+
+#[test]
+fn the_side_with_something_on_it_is_shown_rather_than_a_bare_one() {
+    let mut scene = scene();
+    block(&mut scene, [-5.0, 0.0, -0.5], [5.0, 6.0, 0.0], false);
+    for (x, y) in (0..15).map(|i| ((i % 5) as f32 * 2.0 - 4.0, (i / 5) as f32 * 2.0 + 1.0)) {
+        block(&mut scene, [x - 0.5, y - 0.6, -0.8], [x + 0.5, y + 0.6, -0.5], false);
+    }
+    let (eye, place) = view(&scene);
+    assert!(place.starts_with("behind") && eye.towards().z < -0.5, "{place}");
+}
+
+#[test]
+fn a_few_vertices_far_away_do_not_count() {
+    let mut scene = scene();
+    put(&mut scene, icosphere(3), Affine3A::IDENTITY);
+    let expected = scene.first_view(Vec3::Y);
+    for far in [100.0, 1e6] {
+        let stray = quad(Vec3::new(far, 0.0, 0.0), Vec3::X, Vec3::Y);
+        let mut scene = scene.clone();
+        put(&mut scene, stray, Affine3A::IDENTITY);
+        let found = scene.first_view(Vec3::Y);
+        assert!(found.sensor.position.distance(expected.sensor.position) < 1e-3, "{found:?} for {expected:?}");
+    }
+    // But what reaches from the thing to there is no stray, as the walls of a room around it.
+    block(&mut scene, [-2.0, -1.0, -2.0], [200.0, 20.0, 20.0], true);
+    let (eye, _) = view(&scene);
+    let ball = eye.seen(DVec3::ZERO).abs().max_element();
+    let nearest = met(&corners(&scene), eye.position, -eye.position.normalize());
+    assert!(ball < 0.9 && nearest.is_some_and(|(t, front)| front && (t - eye.position.length() + 1.0).abs() < 0.1));
+}
+
+#[test]
 fn a_flat_thing_is_seen_from_its_outward_side() {
     let edges = [
         (Vec3::X, Vec3::Y),

@@ -127,56 +127,16 @@ pub(super) fn view(solid: &Solid, frame: DMat3, aspect: f64) -> Option<Eye> {
 fn best(solid: &Solid, frame: DMat3, aspect: f64, air: &[&Place]) -> Option<Eye> {
     let half_height = (HALF_WIDTH.to_radians().tan() / aspect).min(HALF_HEIGHT.to_radians().tan());
     let tangents = [half_height * aspect, half_height];
-    let half_width = tangents[0].atan();
-    let up = frame.y_axis;
-    let top = frame.transpose().abs() * solid.half.as_dvec3();
-    let mut eyes: Vec<(DVec3, f64)> = Vec::new();
-    for place in air {
-        let floor = place.point - up * place.floor;
-        let room = top.y - floor.dot(up);
-        let height = solid.meet_opaque(place.point, up).map_or(room, |hit| f64::from(hit.distance) + place.floor);
-        let eye = floor + up * EYE * height;
-        // Points above each other stand on one floor, or on several.
-        let is_known = |other: DVec3| (other - eye).reject_from(up).length() < 1e-6 && other.distance(eye) < 0.05;
-        if !eyes.iter().any(|(other, _)| is_known(*other)) {
-            eyes.push((eye, height));
-        }
-    }
+    let eyes = eyes(solid, frame, air);
     let step = eyes.len().div_ceil(PLACES).max(1);
     let mut views: Vec<(f64, Eye)> = Vec::new();
-    for (eye, height) in eyes.into_iter().step_by(step) {
-        // By direction: how far one sees at each tilt.
-        let seen: Vec<[f64; TILTS.len()]> = (0..TURNS)
-            .map(|turn| {
-                TILTS.map(|tilt| {
-                    let direction = direction(frame, turn as f64 / TURNS as f64 * TAU, tilt.to_radians());
-                    solid.meet_opaque(eye, direction).map_or(1.0, |hit| f64::from(hit.distance))
-                })
-            })
-            .collect();
-        let level = TILTS.len() / 2;
-        let widths = (0..TURNS / 2).map(|turn| seen[turn][level] + seen[turn + TURNS / 2][level]);
-        let near = NEAR * widths.fold(height, f64::min);
-        let sums: Vec<[f64; 2]> = seen
-            .iter()
-            .map(|far| {
-                [far.iter().sum(), far.iter().filter(|far| **far < near).count() as f64]
-                    .map(|sum: f64| sum / TILTS.len() as f64)
-            })
-            .collect();
-        let reach = (half_width / TAU * TURNS as f64).floor() as usize;
-        let scores = (0..TURNS).map(|turn| {
-            let window = (0..=2 * reach).map(|i| sums[(turn + TURNS + i - reach) % TURNS]);
-            let [far, near] =
-                window.fold([0.0; 2], |sum, s| [sum[0] + s[0], sum[1] + s[1]]).map(|sum| sum / (2 * reach + 1) as f64);
-            far * (1.0 - 2.0 * near).max(0.0)
-        });
-        let mut best: Vec<(usize, f64)> = scores.enumerate().collect();
-        best.sort_by(|a, b| b.1.total_cmp(&a.1));
-        for (turn, score) in best.into_iter().take(TURNS_KEPT) {
-            let forward = direction(frame, turn as f64 / TURNS as f64 * TAU, 0.0);
-            let depth = solid.meet_opaque(eye, forward).map_or(1.0, |hit| f64::from(hit.distance));
-            views.push((score, Eye { position: eye, axes: axes(forward, up), tangents, depth }));
+    for (position, height) in eyes.into_iter().step_by(step) {
+        let mut scores: Vec<_> = outlook(solid, frame, position, height, tangents[0]).into_iter().enumerate().collect();
+        scores.sort_by(|a, b| b.1.total_cmp(&a.1));
+        for (turn, score) in scores.into_iter().take(TURNS_KEPT) {
+            let forward = direction(frame, turn, 0.0);
+            let depth = solid.meet_opaque(position, forward).map_or(1.0, |hit| f64::from(hit.distance));
+            views.push((score, Eye { position, axes: axes(forward, frame.y_axis), tangents, depth }));
         }
     }
     views.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -191,7 +151,52 @@ fn best(solid: &Solid, frame: DMat3, aspect: f64, air: &[&Place]) -> Option<Eye>
     found.map(|(_, eye)| eye)
 }
 
-/// A direction, turned from the front to the right, and tilted upwards.
-fn direction(frame: DMat3, turn: f64, tilt: f64) -> DVec3 {
-    frame * DVec3::new(tilt.cos() * turn.sin(), tilt.sin(), tilt.cos() * turn.cos())
+/// Eye points over the floors below places, and the height of the room there.
+fn eyes(solid: &Solid, frame: DMat3, air: &[&Place]) -> Vec<(DVec3, f64)> {
+    let up = frame.y_axis;
+    let top = up.abs().dot(solid.half.as_dvec3());
+    let mut eyes: Vec<(DVec3, f64)> = Vec::new();
+    for place in air {
+        let floor = place.point - up * place.floor;
+        let height =
+            solid.meet_opaque(place.point, up).map_or(top - floor.dot(up), |hit| f64::from(hit.distance) + place.floor);
+        let eye = floor + up * EYE * height;
+        // Points above each other stand on one floor, or on several.
+        let is_known = |other: DVec3| (other - eye).reject_from(up).length() < 1e-6 && other.distance(eye) < 0.05;
+        if !eyes.iter().any(|(other, _)| is_known(*other)) {
+            eyes.push((eye, height));
+        }
+    }
+    eyes
+}
+
+/// For each turn, how far one sees in a picture of this width on average, less if much of it is too near.
+fn outlook(solid: &Solid, frame: DMat3, position: DVec3, height: f64, tangent: f64) -> Vec<f64> {
+    let seen: Vec<[f64; TILTS.len()]> = (0..TURNS)
+        .map(|turn| {
+            TILTS.map(|tilt| {
+                let hit = solid.meet_opaque(position, direction(frame, turn, tilt.to_radians()));
+                hit.map_or(1.0, |hit| f64::from(hit.distance))
+            })
+        })
+        .collect();
+    let level = TILTS.len() / 2;
+    let widths = (0..TURNS / 2).map(|turn| seen[turn][level] + seen[turn + TURNS / 2][level]);
+    let near = NEAR * widths.fold(height, f64::min);
+    let reach = (tangent.atan() / TAU * TURNS as f64).floor() as usize;
+    (0..TURNS)
+        .map(|turn| {
+            let window = (0..=2 * reach).flat_map(|i| seen[(turn + TURNS + i - reach) % TURNS]);
+            let [far, too_near] =
+                window.fold([0.0; 2], |[sum, n], far| [sum + far, n + f64::from(u8::from(far < near))]);
+            let rays = ((2 * reach + 1) * TILTS.len()) as f64;
+            far / rays * (1.0 - 2.0 * too_near / rays).max(0.0)
+        })
+        .collect()
+}
+
+/// A direction, so many turns from the front to the right, and tilted upwards.
+fn direction(frame: DMat3, turn: usize, tilt: f64) -> DVec3 {
+    let (sin, cos) = (turn as f64 / TURNS as f64 * TAU).sin_cos();
+    frame * DVec3::new(tilt.cos() * sin, tilt.sin(), tilt.cos() * cos)
 }

@@ -6,17 +6,20 @@
 
 mod fit;
 mod inside;
+mod lattice;
 mod outside;
 mod solid;
 mod strays;
 mod surroundings;
 mod trial;
+mod visit;
 
 use self::fit::Eye;
 use self::outside::Subject;
-use self::solid::{Solid, for_points, for_some_points};
+use self::solid::Solid;
 use self::surroundings::Bounds;
 use self::trial::Trial;
+use self::visit::{for_points, for_some_points};
 use super::{Projection, Scene, Sensor};
 use glam::{DMat3, DVec3, Vec3};
 
@@ -100,7 +103,7 @@ fn find(scene: &Scene, solid: &Solid, frame: DMat3, aspect: f64) -> (Eye, String
     let bounds = Bounds { low: -solid.half, high: solid.half };
     let all = points(bounds);
     let mut trial_points = Vec::new();
-    let step = solid::points(scene).div_ceil(TRIAL_POINTS).max(1);
+    let step = visit::points(scene).div_ceil(TRIAL_POINTS).max(1);
     for_some_points(scene, step, &mut |p| {
         if bounds.contains(here(p)) {
             trial_points.push(here(p))

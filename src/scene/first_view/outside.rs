@@ -5,8 +5,8 @@ use super::solid::Solid;
 use super::trial::Trial;
 use glam::{DMat3, DVec3};
 
-/// How much it counts how much there is to see.
-const CONTENT: f64 = 1.0;
+/// A view that shows nothing but smooth surfaces counts as one with this much content.
+const SMOOTH: f64 = 0.1;
 /// How many times as much another side has to show as the first.
 const CLEARLY: f64 = 1.3;
 /// And one from below, where there may be a ground.
@@ -84,7 +84,7 @@ impl Subject<'_> {
             let towards = self.towards(side.azimuth, (level + side.above).max(-BELOW));
             let trial = self.try_out(towards);
             // Where no side is the outward one, all are alike.
-            let score = trial.area() * (trial.front() + 0.1) * (1.0 + CONTENT * trial.content());
+            let score = trial.area() * (trial.front() + 0.1) * (SMOOTH + trial.content()).sqrt();
             let needed = if side.above.is_finite() { CLEARLY } else { FROM_BELOW };
             if best.as_ref().is_none_or(|(so_far, ..)| score > needed * so_far) {
                 best = Some((score, towards, side.name));

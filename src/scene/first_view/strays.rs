@@ -1,6 +1,6 @@
 //! Where a scene is, apart from a few vertices that lie far from all others.
 
-use super::solid::{for_points, for_some_points, for_triangles, points};
+use super::visit::{for_points, for_some_points, for_triangles, points};
 use crate::scene::Scene;
 use glam::DVec3;
 
@@ -12,7 +12,6 @@ const GAP: usize = 40;
 const FEW: f64 = 0.03;
 /// Axes times the strays that one scene may have on both their sides.
 const ROUNDS: usize = 12;
-
 /// Vertices that are counted.
 const COUNTED: usize = 200_000;
 

@@ -1,6 +1,7 @@
 //! Grounds and backdrops, which are much larger than what is meant to be seen.
 
-use super::solid::{Mix, Solid};
+use super::lattice::Mix;
+use super::solid::Solid;
 use glam::{DVec3, Vec3A};
 use std::collections::HashMap;
 use std::hash::BuildHasherDefault;
@@ -36,10 +37,12 @@ impl Bounds {
         0.5 * (self.low + self.high)
     }
 
+    /// The largest extent.
     pub(super) fn extent(&self) -> f32 {
         (self.high - self.low).max_element()
     }
 
+    /// Whether a point lies within, or hardly outside.
     pub(super) fn contains(&self, p: DVec3) -> bool {
         let p = Vec3A::from(p.as_vec3());
         p.cmpge(self.low - 1e-3).all() && p.cmple(self.high + 1e-3).all()
