@@ -110,8 +110,19 @@ fn find(scene: &Scene, solid: &Solid, frame: DMat3, aspect: f64) -> (Eye, String
         }
     });
     let whole = Subject { solid, points: &trial_points, frame, aspect, margin: MARGIN };
-    if let Some((towards, place)) = whole.open_side() {
+    let found = search(&whole, &points, &all);
+    if solid.is_exhausted() {
+        let (towards, place) = whole.usual_side();
         return (whole.eye(towards, &all), place.into());
+    }
+    found
+}
+
+/// The camera for a whole scene, and where it stands; `points` gives the points within bounds, and `all` are those of the whole.
+fn search<P: Fn(&mut dyn FnMut(DVec3))>(whole: &Subject, points: &impl Fn(Bounds) -> P, all: &P) -> (Eye, String) {
+    let Subject { solid, frame, aspect, .. } = *whole;
+    if let Some((towards, place)) = whole.open_side() {
+        return (whole.eye(towards, all), place.into());
     }
     let room = || inside::view(solid, frame, aspect).map(|eye| (eye, "inside, as of a room".into()));
     let things = surroundings::within(solid);
@@ -133,7 +144,7 @@ fn find(scene: &Scene, solid: &Solid, frame: DMat3, aspect: f64) -> (Eye, String
         return room;
     }
     let (towards, place) = whole.best_side();
-    (whole.eye(towards, &all), place.into())
+    (whole.eye(towards, all), place.into())
 }
 
 /// Some of the points, evenly chosen.

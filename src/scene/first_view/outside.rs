@@ -76,6 +76,11 @@ impl Subject<'_> {
         self.frame * DVec3::new(elevation.cos() * azimuth.sin(), elevation.sin(), elevation.cos() * azimuth.cos())
     }
 
+    /// The first of the sides.
+    pub(super) fn usual_side(&self) -> (DVec3, &'static str) {
+        (self.towards(SIDES[0].azimuth, self.elevation()), SIDES[0].name)
+    }
+
     /// The side that shows the most, the first of them unless another is clearly better.
     pub(super) fn best_side(&self) -> (DVec3, &'static str) {
         let level = self.elevation();

@@ -8,9 +8,13 @@ use obvhs::bvh2::Bvh2;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 use obvhs::ray::{Ray, RayHit};
 use obvhs::rt_triangle::RtTriangle;
+use std::cell::Cell;
 
 /// Scenes of at most so many triangles are looked at as they are.
 const EXACT: u64 = 150_000;
+
+/// Tests of a triangle in all: ordinary scenes need a tenth.
+const MOST_TESTED: u32 = 40_000_000;
 
 /// What a ray meets.
 #[derive(Debug, Clone, Copy)]
@@ -37,6 +41,8 @@ pub(super) struct Solid {
     /// By triangle: light passes it.
     clear: Vec<bool>,
     tree: Bvh2,
+    /// Triangles that rays have been tested against so far.
+    tested: Cell<u32>,
 }
 
 impl Solid {
@@ -63,15 +69,20 @@ impl Solid {
         let mut builder = PlocBuilder::with_capacity(triangles.len());
         let tree = builder.build(PlocSearchDistance::Minimum, &triangles, indices, SortPrecision::U64, 0);
         let half = Vec3A::from((0.5 * (high - low) / unit).as_vec3());
-        Some(Solid { middle, unit, half, triangles, clear, tree })
+        Some(Solid { middle, unit, half, triangles, clear, tree, tested: Cell::new(0) })
     }
 
     /// The first thing that a ray meets. Of two in one place the one that turns its outward side to the ray.
     pub(super) fn meet(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
+        if self.is_exhausted() {
+            return None;
+        }
+        let mut tested = 0;
         let [origin, direction] = [origin, direction].map(|v| Vec3A::from(v.as_vec3()));
         let (mut nearest, mut found, mut front) = (f32::INFINITY, 0, false);
         let mut hit = RayHit::none();
         self.tree.ray_traverse(Ray::new(origin, direction, 1e-5, f32::INFINITY), &mut hit, |ray, place| {
+            tested += 1;
             let index = self.tree.primitive_indices[place];
             let triangle = &self.triangles[index as usize];
             let distance = triangle.intersect(ray);
@@ -83,6 +94,7 @@ impl Solid {
             }
             distance
         });
+        self.tested.set(self.tested.get() + tested);
         (nearest < f32::INFINITY).then(|| Hit {
             distance: nearest,
             front,
@@ -104,6 +116,11 @@ impl Solid {
             passed += f64::from(hit.distance) + 1e-5;
         }
         None
+    }
+
+    /// Whether rays had to be tested against so many triangles that no more of them are followed: many triangles lie in one place.
+    pub(super) fn is_exhausted(&self) -> bool {
+        self.tested.get() > MOST_TESTED
     }
 
     /// How many triangles there are.
