@@ -10,6 +10,7 @@ mod darkness;
 mod environment;
 mod estimator;
 mod filter;
+mod first_view;
 mod load;
 mod luminaire;
 mod luminaire_table;
@@ -30,6 +31,7 @@ pub use estimator::{
     AreaSampling, Directions, Estimator, EstimatorChanges, Extinction, Integrator, LightSampling, PRESETS,
 };
 pub use filter::Filter;
+pub use first_view::FirstView;
 pub use load::load;
 pub use luminaire::Luminaire;
 pub use luminaire_table::{EmissiveTriangle, LuminaireTable, SampledLuminaire};

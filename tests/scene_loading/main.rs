@@ -3,6 +3,7 @@
 mod bodies;
 mod colours;
 mod far;
+mod first_view;
 mod free_form;
 mod hostile;
 mod lamps;

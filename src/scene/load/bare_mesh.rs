@@ -11,8 +11,6 @@ use std::path::Path;
 
 /// Vertical field of view of the framing camera, in degrees.
 const FOV: f32 = 40.0;
-/// From the scene to the camera: in front (+z), a little to the right and above.
-const VIEW: DVec3 = DVec3::new(0.5, 0.35, 1.0);
 /// The direction in which the key light travels: from the upper left, behind the camera.
 const KEY_DIRECTION: DVec3 = DVec3::new(0.3, -0.8, -0.7);
 /// Irradiance of the key light: a white surface that faces it has a radiance of 0.7, and with the ambient term 0.9: not yet clipped.
@@ -101,29 +99,7 @@ fn percent(share: f64) -> String {
     if share < 1e-6 { "less than 0.0001 %".into() } else { format!("{:.4} %", 100.0 * share) }
 }
 
-/// A camera in front of the scene, a little from above and from the right, that has all of it in the picture.
-pub(super) fn framing_sensor(scene: &Scene) -> Sensor {
-    let (low, high) = scene.world_bounds();
-    let center = 0.5 * (low + high);
-    let mut radius: f64 = 0.0;
-    for object in &scene.objects {
-        let to_world = widen(object.object_to_world);
-        for position in &scene.meshes[object.mesh as usize].positions {
-            radius = radius.max(to_world.transform_point3(position.as_dvec3()).distance(center));
-        }
-    }
-    // A small thing far from the origin: keep the camera distinct from its target in single precision.
-    radius = radius.max(1e-5 * center.abs().max_element());
-    let half_height = f64::from(FOV).to_radians() / 2.0;
-    let aspect = f64::from(scene.film.width) / f64::from(scene.film.height);
-    let half_width = (half_height.tan() * aspect).atan();
-    let distance = radius / half_height.min(half_width).sin();
-    let position = (center + distance * VIEW.normalize()).as_vec3();
-    Sensor {
-        position,
-        target: center.as_vec3(),
-        up: Vec3::Y,
-        projection: Projection::Perspective { fov: FOV },
-        lens: None,
-    }
+/// The camera that [`Scene::first_view`] finds.
+fn framing_sensor(scene: &Scene) -> Sensor {
+    scene.first_view(Vec3::Y).sensor
 }

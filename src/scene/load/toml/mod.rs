@@ -9,10 +9,9 @@ mod settings;
 mod tables;
 mod values;
 
-use super::bare_mesh;
 use super::loader::Loader;
 use super::text_file::read_bytes;
-use crate::scene::{Projection, RenderSettings, Scene, Sensor};
+use crate::scene::{FirstView, Projection, RenderSettings, Scene, Sensor};
 use crate::{Error, Result};
 use advice::{in_plain_words, wrong_brackets};
 use file::File;
@@ -110,8 +109,8 @@ impl File<'_> {
             warnings: loader.warnings,
         };
         scene.sensor = sensor.unwrap_or_else(|| {
-            let sensor = bare_mesh::framing_sensor(&scene);
-            scene.warnings.push(self.warning("no [sensor]; the camera is placed to frame the scene"));
+            let FirstView { sensor, place } = scene.first_view(Vec3::Y);
+            scene.warnings.push(self.warning(&format!("no [sensor]; the camera stands {place}")));
             sensor
         });
         scene.warnings.extend(scene.dark_because());
