@@ -5,11 +5,11 @@ use crate::shared::counts::{pixels, samples, seed};
 use crate::shared::estimator::EstimatorOptions;
 use crate::shared::film_size::FilmSize;
 use crate::shared::foreseen::warn_of_the_picture;
-use crate::shared::printing::warn;
+use crate::shared::printing::{note, warn};
+use crate::shared::scene_options::SceneOptions;
 use crate::shared::values::stops;
 use luminaire::Result;
 use luminaire::film::Film;
-use luminaire::scene;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -58,6 +58,8 @@ pub struct Options {
     seed: Option<u32>,
     #[command(flatten)]
     estimator: EstimatorOptions,
+    #[command(flatten)]
+    of_scene: SceneOptions,
 
     /// What traces the rays to begin with.
     #[arg(long, value_name = "NAME", default_value = "auto", help_heading = "Device")]
@@ -77,13 +79,14 @@ fn indented(text: &str) -> String {
 pub fn run(options: &Options) -> Result<ExitCode> {
     let request = backend_name::request(options.backend, options.device.as_deref())?;
     options.estimator.check()?;
-    let mut scene = scene::load(&options.scene)?;
+    let mut scene = options.of_scene.load(&options.scene)?;
     FilmSize { width: options.width, height: options.height, largest: LARGEST_SIDE }.apply(&mut scene.film);
     Film::check_size(scene.film.width, scene.film.height)?;
     options.estimator.apply(&mut scene)?;
     scene.settings.seed = options.seed.unwrap_or(scene.settings.seed);
     scene.settings.exposure = options.exposure.unwrap_or(scene.settings.exposure);
     warn_of_the_picture(&mut scene);
+    scene.notes.iter().for_each(|chosen| note(chosen));
     scene.warnings.iter().for_each(warn);
     luminaire_view::run(luminaire_view::Options { scene, request, spp: options.spp.unwrap_or(u32::MAX) })?;
     Ok(ExitCode::SUCCESS)

@@ -8,6 +8,7 @@ use crate::shared::counts::pixels;
 use crate::shared::film_size::FilmSize;
 use crate::shared::foreseen::warn_of_the_picture;
 use crate::shared::printing::print;
+use crate::shared::scene_options::SceneOptions;
 use crate::shared::table::table;
 use luminaire::film::Demand;
 use luminaire::glam::DVec3;
@@ -46,11 +47,13 @@ pub struct Options {
     /// Height in pixels [default: the scene's, or from --width at the scene's aspect ratio].
     #[arg(long, value_name = "PIXELS", allow_negative_numbers = true, value_parser = pixels::<1, LARGEST_SIDE>)]
     height: Option<u32>,
+    #[command(flatten)]
+    of_scene: SceneOptions,
 }
 
 /// Loads a scene and prints what is in it.
 pub fn run(options: &Options) -> Result<ExitCode> {
-    let mut scene = scene::load(&options.scene)?;
+    let mut scene = options.of_scene.load(&options.scene)?;
     FilmSize { width: options.width, height: options.height, largest: LARGEST_SIDE }.apply(&mut scene.film);
     let FilmSettings { width, height, .. } = scene.film;
     // What no memory of this machine holds is told, and what nothing can hold is refused as `render` does.
@@ -64,7 +67,7 @@ pub fn run(options: &Options) -> Result<ExitCode> {
 
 /// The whole report on a scene.
 fn describe(scene: &Scene) -> String {
-    let (low, high) = scene.world_bounds();
+    let (low, high) = scene.model_bounds();
     let (low, high) = (low + scene.origin, high + scene.origin);
     let stored: usize = scene.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
     let mut text = format!("{}\n\n", scene.path.display());
@@ -115,6 +118,10 @@ fn describe(scene: &Scene) -> String {
         text += &format!("\ntextures\n{}", table(2, &textures(scene)));
     }
     text += &format!("\nluminaires\n{}", table(2, &luminaires(scene)));
+    if !scene.notes.is_empty() {
+        text += "\nchosen\n";
+    }
+    scene.notes.iter().for_each(|note| text += &format!("  {note}\n"));
     text += "\nwarnings\n";
     if scene.warnings.is_empty() {
         text += "  none\n";
@@ -293,6 +300,8 @@ mod tests {
             integrator: Integrator::Path(estimator),
             settings: RenderSettings::default(),
             warnings: vec!["one.obj:3: something odd".into()],
+            notes: vec!["bare model: something chosen".into()],
+            ground: None,
             files: vec![],
         };
         let text = describe(&scene);
@@ -311,6 +320,7 @@ mod tests {
             "(1 2 3)",
             "point",
             "22 emissive triangles  total area 22.0000",
+            "  bare model: something chosen",
             "  one.obj:3: something odd",
         ] {
             assert!(text.contains(part), "{part} is not in\n{text}");

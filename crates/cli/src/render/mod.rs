@@ -31,7 +31,7 @@ use crate::shared::printing::Notes;
 use crate::shared::values::Pixel;
 use luminaire::backend::{self, Renderer, Request};
 use luminaire::render::{End, Limits, Rendered, aovs, resume};
-use luminaire::scene::{self, FilmSettings, Scene};
+use luminaire::scene::{FilmSettings, Scene};
 use luminaire::{Error, Result};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -58,11 +58,12 @@ pub fn run(options: &Options) -> Result<ExitCode> {
 
     let mut seconds = Seconds::default();
     let start = Instant::now();
-    let mut scene = scene::load(&options.scene)?;
+    let mut scene = options.of_scene.load(&options.scene)?;
     seconds.load = start.elapsed().as_secs_f64();
     outputs.check(scene.files.iter().map(|path| ("a file of the scene", &**path)))?;
     change(&mut scene, options)?;
     let lacks_light = warn_of_the_picture(&mut scene);
+    scene.notes.iter().for_each(|note| notes.note(note));
     scene.warnings.iter().for_each(|warning| notes.warn(warning));
 
     let render = || trace(options, &scene, lacks_light, &request, seconds, &pictures, notes);

@@ -4,6 +4,7 @@ use crate::shared::backend_name::BackendName;
 use crate::shared::counts::{pixels, samples, seed};
 use crate::shared::estimator::EstimatorOptions;
 use crate::shared::exit_codes::EXIT_CODES;
+use crate::shared::scene_options::SceneOptions;
 use crate::shared::values::{Pixel, noise, pixel, range, seconds, stops};
 use std::ops::Range;
 use std::path::PathBuf;
@@ -99,6 +100,8 @@ pub struct Options {
     pub seed: Option<u32>,
     #[command(flatten)]
     pub estimator: EstimatorOptions,
+    #[command(flatten)]
+    pub of_scene: SceneOptions,
 
     /// Save the render there while it runs, when it ends, and on Ctrl-C or SIGTERM: an EXR file of the picture so far, and of all that
     /// --resume needs.
