@@ -30,7 +30,7 @@ pub use estimator::{
     AreaSampling, Directions, Estimator, EstimatorChanges, Extinction, Integrator, LightSampling, PRESETS,
 };
 pub use filter::Filter;
-pub use load::{Choices, Sky, Up, load, load_with, scene_file};
+pub use load::{Choices, SceneFile, Sky, Up, load, load_with, scene_file};
 pub use luminaire::Luminaire;
 pub use luminaire_table::{EmissiveTriangle, LuminaireTable, SampledLuminaire};
 pub use material::{Maps, Material};

@@ -4,6 +4,8 @@ use crate::scene::studio_sky::GROUND_ALBEDO;
 use crate::scene::{Material, Mesh, Object, Scene, Triangle, widen};
 use glam::{Affine3A, DVec3, Vec3};
 
+/// The diffuse albedo of a ground of which nobody states one: as bright as the horizon of the studio sky.
+pub(super) const ALBEDO: f32 = GROUND_ALBEDO as f32;
 /// Half the edge of the ground, in radii of the ball around the model's box: shadows end far within.
 const REACH: f64 = 20.0;
 /// The square in the middle has this half edge in the same unit.
@@ -30,7 +32,7 @@ pub(super) struct Ground {
 /// The height of a ground that nobody states, in the coordinates of the files: a hair below the scene's lowest point, with few digits.
 pub(super) fn height(scene: &Scene) -> f64 {
     let mut lowest = f64::INFINITY;
-    for object in &scene.objects {
+    for (_, object) in (0..).zip(&scene.objects).filter(|(index, _)| scene.ground != Some(*index)) {
         let to_world = widen(object.object_to_world);
         let mesh = &scene.meshes[object.mesh as usize];
         for vertex in mesh.triangles.iter().flat_map(|triangle| triangle.vertices) {
@@ -47,12 +49,18 @@ pub(super) fn height(scene: &Scene) -> f64 {
     format!("{rounded:.*}", decimals.max(0.0) as usize).parse().unwrap_or(rounded)
 }
 
+/// The length of an edge of a ground of which nobody states one.
+pub(super) fn size(scene: &Scene) -> f64 {
+    let (low, high) = scene.model_bounds();
+    REACH * low.distance(high)
+}
+
 /// Adds a ground to a scene that has its objects, its origin and its camera.
 pub(super) fn add(scene: &mut Scene, ground: &Ground) {
     let y = ground.height.unwrap_or_else(|| height(scene)) - scene.origin.y;
     let (low, high) = scene.model_bounds();
     let (middle, radius) = (0.5 * (low + high), 0.5 * low.distance(high));
-    let half = ground.size.map_or(REACH * radius, |size| 0.5 * size);
+    let half = 0.5 * ground.size.unwrap_or_else(|| size(scene));
     let material = scene.materials.len() as u32;
     let mesh = sheet(DVec3::new(middle.x, y, middle.z), MIDDLE * radius, half, material);
     scene.ground = Some(scene.objects.len() as u32);
@@ -63,7 +71,7 @@ pub(super) fn add(scene: &mut Scene, ground: &Ground) {
         material: None,
     });
     scene.meshes.push(mesh.into());
-    let albedo = ground.albedo.unwrap_or(Vec3::splat(GROUND_ALBEDO as f32));
+    let albedo = ground.albedo.unwrap_or(Vec3::splat(ALBEDO));
     scene.materials.push(Material { name: "ground".into(), lambert: albedo, ambient: albedo, ..Material::default() });
 }
 

@@ -23,7 +23,7 @@ mod texture;
 mod toml;
 
 pub use choices::{Choices, Sky, Up};
-pub use scene_file::scene_file;
+pub use scene_file::{SceneFile, scene_file};
 
 use crate::scene::Scene;
 use crate::{Error, Result};
