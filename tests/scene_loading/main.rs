@@ -1,5 +1,6 @@
 //! What a user relies on when a scene is loaded: what loads, what is repaired with a warning, and what each error says.
 
+mod bare_models;
 mod bodies;
 mod colours;
 mod far;
@@ -10,6 +11,7 @@ mod mtl;
 mod obj;
 mod own_scenes;
 mod pictures;
+mod scene_files;
 mod polygons;
 mod settings;
 mod smoothing;

@@ -131,10 +131,17 @@ impl BareMesh {
             _ => format!(", normals smooth below {degrees} degrees"),
         });
         let up = if self.up == Up::Z { ", turned from z up to y up" } else { "" };
-        let name = self.scene.path.display();
+        let name = self.scene.path.to_string_lossy();
         let stem = self.scene.path.file_stem().unwrap_or_default().to_string_lossy();
-        format!("bare model: {light}, {ground}{smooth}{up}; `luminaire scene {name} > {stem}.toml` writes that down, to be changed")
+        let (name, file) = (for_a_shell(&name), for_a_shell(&format!("{stem}.toml")));
+        format!("bare model: {light}, {ground}{smooth}{up}; `luminaire scene {name} > {file}` writes that down, to be changed")
     }
+}
+
+/// A word of a command as a shell reads it.
+fn for_a_shell(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "/._-+,:@%".contains(c);
+    if word.chars().all(plain) { word.to_owned() } else { format!("'{}'", word.replace('\'', "'\\''")) }
 }
 
 /// The emitting triangles' share of the area of all triangles, from 0 to 1.

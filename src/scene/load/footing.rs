@@ -11,8 +11,10 @@ const FLAT: f64 = 1e-3;
 const LOW: f64 = 0.1;
 /// Something that lies under at least this share of the model's footprint extends over all of it.
 const WHOLE: f64 = 0.9;
-/// Where a floor is seen from above on at least this share of the footprint, it is one, and not the bottom of a thing.
-const OPEN: f64 = 0.2;
+/// A sheet near the bottom that is seen from above on at least this share of the footprint is a floor.
+const FLOOR: f64 = 0.2;
+/// A single sheet on at least this share of the footprint is a landscape.
+const LANDSCAPE: f64 = 0.8;
 /// Two surfaces at one place are one where they are no further apart than this share of the model's height.
 const SAME: f64 = 0.01;
 
@@ -21,9 +23,9 @@ type Column = Option<[f64; 2]>;
 
 /// Whether the model brings what it stands on.
 ///
-/// From straight above, its box is its footprint. It brings its own ground where that is covered all over, and a good part of it shows something
-/// near the bottom (a floor with walls or things on it, a backdrop), or a single sheet (a landscape). A cube covers its footprint too, but
-/// shows its top, which has the bottom below it.
+/// From straight above, its box is its footprint. It brings its own ground where that is covered all over, and where a good part of it is a sheet
+/// with nothing below, near the bottom (a floor with walls or things on it, a backdrop), or nearly all of it at whatever height (a
+/// landscape). A cube or a slab covers its footprint too, but has a bottom below its top: such things stand on the ground.
 pub(super) fn brings_its_ground(scene: &Scene) -> bool {
     let (low, high) = scene.model_bounds();
     let size = high - low;
@@ -37,9 +39,9 @@ pub(super) fn brings_its_ground(scene: &Scene) -> bool {
     let columns = columns(scene, low, size);
     let all = columns.len() as f64;
     let share = |holds: &dyn Fn(&[f64; 2]) -> bool| columns.iter().flatten().filter(|c| holds(c)).count() as f64 / all;
-    let floor = share(&|[_, top]| top - low.y <= LOW * size.y);
-    let sheet = share(&|[bottom, top]| top - bottom <= SAME * size.y);
-    share(&|_| true) >= WHOLE && (floor >= OPEN || sheet >= 1.0 - OPEN)
+    let sheet = |[bottom, top]: &[f64; 2]| top - bottom <= SAME * size.y;
+    let floor = share(&|column| sheet(column) && column[1] - low.y <= LOW * size.y);
+    share(&|_| true) >= WHOLE && (floor >= FLOOR || share(&sheet) >= LANDSCAPE)
 }
 
 /// The lowest and the highest surface over the middle of each cell.

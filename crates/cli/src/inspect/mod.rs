@@ -28,7 +28,7 @@ Examples:
   luminaire inspect scenes/textures/textures.toml
       objects, materials, textures and luminaires, what the kernel will model, the memory that this takes, and every warning
   luminaire inspect model.obj --width 3840
-      the camera and the light that were found for it, too, and what a picture of this size takes of memory and disk
+      what was chosen for it (camera, sky, ground), too, and what a picture of this size takes of memory and disk
 
 Exit codes:
   0  the scene can be loaded, with or without warnings

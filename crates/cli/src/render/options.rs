@@ -15,6 +15,8 @@ Examples:
       cornell.png in the current folder, with what the scene file says
   luminaire render model.obj -o out/model.png -o out/model.exr --width 1920 --spp 256
       two files of one render; the height follows from the scene's aspect ratio
+  luminaire render model.obj --sky sunset.hdr --up z --ground off
+      a bare model in a light of one's own, turned from z up, on nothing; `luminaire scene` writes all that it gets
   luminaire render model.obj --time 30 --backend compute-bvh --stats run.json
       as many samples as 30 seconds allow, and the figures of the run
   luminaire render model.obj --noise 0.02 --time 600 --error-map noise.png
@@ -48,7 +50,7 @@ const REPLAY_CONFLICTS: [&str; 11] = [
 #[derive(Debug, clap::Args)]
 #[command(after_help = format!("{EXAMPLES}{EXIT_CODES}"))]
 pub struct Options {
-    /// A scene file (.toml) or any OBJ file.
+    /// A scene file (.toml) or any OBJ file, which then gets a camera, and a sky and a ground if nothing in it emits.
     pub scene: PathBuf,
 
     /// A file to write; .png, .exr or .hdr says the format. May be given several times [default: <SCENE>.png here].

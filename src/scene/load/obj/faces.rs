@@ -6,7 +6,7 @@ use glam::{DVec3, Vec3};
 use std::collections::{BTreeMap, HashMap};
 
 /// More faces than this at one point get no normal there by angle: each is compared with each.
-const MOST_FACES_AT_A_POINT: usize = 16_384;
+const MOST_FACES_AT_A_POINT: usize = 4096;
 
 /// Unit normals that differ by less, single precision's rounding of the corners, are those of one plane.
 const SAME_PLANE: f64 = 1e-5;

@@ -168,7 +168,7 @@ const INTEGRATOR: &str = "
 # directions = \"bsdf\"                    # \"uniform\", \"cosine\", \"bsdf\"
 # extinction = \"throughput\"              # how chance ends a path: \"off\", \"literal\", \"surface\", \"throughput\"
 # albedo_threshold = 0                   # a path whose combined albedo falls below this ends, 0 to 1
-# max_bounces = 1000000                  # at most so many indirect bounces, 0 to 1000000
+# max_bounces = 1000000                  # at most so many indirect bounces, 0 to 1000000; without it no limit
 ";
 
 /// `[render]`: a new key of it gets its line here.
