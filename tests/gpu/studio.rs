@@ -33,7 +33,7 @@ fn ground_far_from_the_model_cannot_be_told_from_the_sky() {
     let mut ground = scene("[environment]\nsky = \"studio\"\n[ground]");
     look(&mut ground, Vec3::new(0.0, 3.0, 10.0), Vec3::new(0.0, 0.0, 18.0));
     let mut white = scene("[environment]\nsky = \"studio\"\n[ground]\ndiffuse = [0.9, 0.9, 0.9]");
-    white.sensor = ground.sensor;
+    white.sensor = ground.sensor.clone();
     let mut shadow = ground.clone();
     look(&mut shadow, Vec3::new(0.2, 2.0, -4.0), Vec3::new(0.2, 0.0, -0.5));
     let mut above = ground.clone();

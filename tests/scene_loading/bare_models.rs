@@ -72,7 +72,10 @@ fn a_bare_model_stands_on_a_ground_under_the_studio_sky() {
         let size = a.distance(b);
         assert!(y < low && low - y < 3e-4 * size.max(0.1 * low), "{y} below {low}");
         let (a, b) = scene.world_bounds();
-        assert!((b.x - a.x) > 10.0 * size && (b.x - a.x) < 100.0 * size, "it is large, but not so that precision suffers");
+        assert!(
+            (b.x - a.x) > 10.0 * size && (b.x - a.x) < 100.0 * size,
+            "it is large, but not so that precision suffers"
+        );
         assert_eq!(scene.warnings, Vec::<String>::new());
         let [note] = &scene.notes[..] else { panic!("{:?}", scene.notes) };
         assert!(note.contains("studio sky") && note.contains(&format!("ground at y = {y:.4}")[..16]), "{note} {y}");
@@ -96,9 +99,8 @@ fn sheet(height: impl Fn(f64, f64) -> f64) -> String {
 
 #[test]
 fn what_brings_its_own_ground_gets_none() {
-    let quad = |corners: [[f64; 3]; 4]| {
-        corners.map(|[x, y, z]| format!("v {x} {y} {z}\n")).concat() + "f -4 -3 -2 -1\n"
-    };
+    let quad =
+        |corners: [[f64; 3]; 4]| corners.map(|[x, y, z]| format!("v {x} {y} {z}\n")).concat() + "f -4 -3 -2 -1\n";
     let floor = quad([[0.0, 0.0, 0.0], [0.0, 0.0, 4.0], [4.0, 0.0, 4.0], [4.0, 0.0, 0.0]]);
     let wall = quad([[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [4.0, 3.0, 0.0], [0.0, 3.0, 0.0]]);
     let roof = floor.replace(" 0 ", " 3 ").replace(" 0.0 ", " 3 ");
@@ -111,7 +113,11 @@ fn what_brings_its_own_ground_gets_none() {
         ("a landscape with a house", sheet(|x, z| 0.4 * x * z) + &block([0.1, 0.8, 0.1], 170), false),
         ("a cube", block([1.0; 3], 1), true),
         ("a slab", block([10.0, 0.3, 10.0], 1), true),
-        ("a roof on a post", quad([[0.0, 3.0, 0.0], [0.0, 3.0, 4.0], [4.0, 3.0, 4.0], [4.0, 3.0, 0.0]]) + &block([0.2, 3.0, 0.2], 5), true),
+        (
+            "a roof on a post",
+            quad([[0.0, 3.0, 0.0], [0.0, 3.0, 4.0], [4.0, 3.0, 4.0], [4.0, 3.0, 0.0]]) + &block([0.2, 3.0, 0.2], 5),
+            true,
+        ),
         ("a floor that covers a part", floor + &block([9.0, 2.0, 1.0], 5), true),
         ("a wall", wall, true),
     ] {
@@ -140,7 +146,8 @@ fn each_choice_can_be_another() {
         Ok(scene) => assert!(scene.files.contains(&folder.path("sky.pfm"))),
         Err(error) => assert!(error.to_string().contains("sky.pfm"), "{error}"),
     }
-    let error = load_with(&folder.path("mesh.obj"), &Choices { sky: Some(Sky::Image("no.hdr".into())), ..none.clone() });
+    let error =
+        load_with(&folder.path("mesh.obj"), &Choices { sky: Some(Sky::Image("no.hdr".into())), ..none.clone() });
     assert_eq!(error.as_ref().unwrap_err().exit_code(), 1);
     assert!(error.unwrap_err().to_string().contains("no.hdr"));
 
@@ -215,7 +222,8 @@ fn a_scene_file_asks_for_sky_and_ground() {
     assert_eq!(scene.warnings, Vec::<String>::new());
     // The camera that is found frames what stands on the ground.
     let without = obj(TRIANGLE).with("s.toml", format!("{light}[[object]]\nmesh = \"mesh.obj\"\n")).load("s.toml");
-    let on_it = obj(TRIANGLE).with("s.toml", format!("{light}[ground]\n[[object]]\nmesh = \"mesh.obj\"\n")).load("s.toml");
+    let on_it =
+        obj(TRIANGLE).with("s.toml", format!("{light}[ground]\n[[object]]\nmesh = \"mesh.obj\"\n")).load("s.toml");
     assert_eq!(without.sensor, on_it.sensor);
 
     for (more, at, words) in [
@@ -241,7 +249,8 @@ fn a_scene_file_asks_for_sky_and_ground() {
 
 #[test]
 fn choices_change_a_scene_file() {
-    let text = format!("{SENSOR}[environment]\nimage = \"sky.hdr\"\n[ground]\nheight = -3\n[[object]]\nmesh = \"mesh.obj\"\n");
+    let text =
+        format!("{SENSOR}[environment]\nimage = \"sky.hdr\"\n[ground]\nheight = -3\n[[object]]\nmesh = \"mesh.obj\"\n");
     let folder = obj(TRIANGLE).with("scene.toml", text);
     let none = Choices::default();
     // The image that is not there is not asked for where another sky is.
@@ -266,4 +275,22 @@ fn choices_change_a_scene_file() {
 
 fn scene_without_ground() -> Folder {
     scene("")
+}
+
+/// A closed room with a lamp is black from outside, and gets the sky there; where the lamp is in sight, it lights its model alone.
+#[test]
+fn a_lamp_that_lights_nothing_that_is_seen_is_not_enough() {
+    let mtl = "newmtl lamp\nKe 5 5 5\nnewmtl wall\nKd .5 .5 .5\n";
+    let lamp = "usemtl lamp\nv 1 2.9 1\nv 2 2.9 1\nv 2 2.9 2\nv 1 2.9 2\nf -4 -3 -2 -1\nusemtl wall\n";
+    let walls = block([3.0; 3], 5);
+    let front = "f 9 10 11 12\n";
+    assert!(walls.contains(front));
+    let room = |walls: &str| obj(format!("mtllib mesh.mtl\n{lamp}{walls}")).with("mesh.mtl", mtl).load("mesh.obj");
+    let closed = room(&walls);
+    assert!(closed.environment.is_some() && closed.notes[0].contains("beside what emits in it"), "{:?}", closed.notes);
+    let open = room(&walls.replace(front, ""));
+    assert!(open.environment.is_none() && open.notes[0].contains("lit by what emits in it"), "{:?}", open.notes);
+    // Off the room, beside a wall.
+    let beside = room("v -1 0 0\nv 4 0 0\nv 4 0 3\nv -1 0 3\nf -4 -1 -2 -3\n");
+    assert!(beside.environment.is_none(), "{:?}", beside.notes);
 }

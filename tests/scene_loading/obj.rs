@@ -2,7 +2,7 @@
 
 use super::*;
 use glam::{Vec2, Vec3};
-use luminaire::scene::{Estimator, Integrator, Luminaire};
+use luminaire::scene::{Estimator, Integrator};
 
 #[test]
 fn endings_of_lines_and_files_do_not_matter() {

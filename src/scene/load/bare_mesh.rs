@@ -1,9 +1,9 @@
-//! What an OBJ file needs to become a picture, and does not say: a camera, and a sky and a ground if next to nothing in it emits.
+//! What an OBJ file needs to become a picture, and does not say: a camera, and a sky and a ground if next to nothing in it emits, or not where it is looked at.
 
 use super::choices::{Choices, SMOOTH, Sky, Up};
 use super::ground::{self, Ground};
 use super::loader::Loader;
-use super::{environment, footing, obj};
+use super::{environment, footing, lamplight, obj};
 use crate::Result;
 use crate::scene::{
     Estimator, FilmSettings, Filter, Integrator, Object, Projection, RenderSettings, Scene, Sensor, widen,
@@ -91,8 +91,8 @@ pub(super) fn load(path: &Path, choices: &Choices) -> Result<BareMesh> {
         *point = (point.as_dvec3() + origin - origin).as_vec3();
     }
     let emitting = emitting_share(&scene);
-    let fitting = || if emitting < LEAST_EMITTING { Sky::Studio } else { Sky::None };
-    let sky = choices.sky.clone().unwrap_or_else(fitting);
+    let lit = emitting >= LEAST_EMITTING && (choices.sky.is_some() || lamplight::reaches_what_is_seen(&scene));
+    let sky = choices.sky.clone().unwrap_or(if lit { Sky::None } else { Sky::Studio });
     scene.environment = environment::of(&sky, &mut scene.files, &mut scene.warnings)?;
     let height = ground::height(&scene);
     let ground = choices.ground.unwrap_or_else(|| {
@@ -113,13 +113,13 @@ pub(super) fn load(path: &Path, choices: &Choices) -> Result<BareMesh> {
 impl BareMesh {
     /// What was chosen, in a line.
     fn note(&self, emitting: f64) -> String {
-        let few = if emitting > 0.0 && emitting < LEAST_EMITTING {
-            format!(" (only {} of its area emits)", percent(emitting))
-        } else {
-            String::new()
+        let why = match emitting {
+            0.0 => String::new(),
+            few if few < LEAST_EMITTING => format!(" (only {} of its area emits)", percent(few)),
+            _ => " beside what emits in it".into(),
         };
         let light = match &self.sky {
-            Sky::Studio => format!("studio sky{few}"),
+            Sky::Studio => format!("studio sky{why}"),
             Sky::Image(path) => format!("the sky of {}", path.display()),
             Sky::Even(radiance) => format!("a sky of radiance {} {} {}", radiance.x, radiance.y, radiance.z),
             Sky::None if emitting > 0.0 => "lit by what emits in it".into(),
@@ -134,7 +134,9 @@ impl BareMesh {
         let name = self.scene.path.to_string_lossy();
         let stem = self.scene.path.file_stem().unwrap_or_default().to_string_lossy();
         let (name, file) = (for_a_shell(&name), for_a_shell(&format!("{stem}.toml")));
-        format!("bare model: {light}, {ground}{smooth}{up}; `luminaire scene {name} > {file}` writes that down, to be changed")
+        format!(
+            "bare model: {light}, {ground}{smooth}{up}; `luminaire scene {name} > {file}` writes that down, to be changed"
+        )
     }
 }
 

@@ -1,8 +1,8 @@
 //! Environments, and their images.
 
-use crate::picture::decode::ImageFile;
 use super::choices::Sky;
 use super::near_name::instead_of;
+use crate::picture::decode::ImageFile;
 use crate::scene::{Environment, EnvironmentImage};
 use crate::{Error, Result};
 use glam::Vec3;

@@ -24,7 +24,7 @@ type Column = Option<[f64; 2]>;
 /// Whether the model brings what it stands on.
 ///
 /// From straight above, its box is its footprint. It brings its own ground where that is covered all over, and where a good part of it is a sheet
-/// with nothing below, near the bottom (a floor with walls or things on it, a backdrop), or nearly all of it at whatever height (a
+/// with nothing below, near the bottom (a floor with walls or things on it, a backdrop), or nearly all of it at whatever heights, down to the bottom (a
 /// landscape). A cube or a slab covers its footprint too, but has a bottom below its top: such things stand on the ground.
 pub(super) fn brings_its_ground(scene: &Scene) -> bool {
     let (low, high) = scene.model_bounds();
@@ -41,7 +41,11 @@ pub(super) fn brings_its_ground(scene: &Scene) -> bool {
     let share = |holds: &dyn Fn(&[f64; 2]) -> bool| columns.iter().flatten().filter(|c| holds(c)).count() as f64 / all;
     let sheet = |[bottom, top]: &[f64; 2]| top - bottom <= SAME * size.y;
     let floor = share(&|column| sheet(column) && column[1] - low.y <= LOW * size.y);
-    share(&|_| true) >= WHOLE && (floor >= FLOOR || share(&sheet) >= LANDSCAPE)
+    // A roof is none: what holds it up goes down further.
+    let lowest =
+        columns.iter().flatten().filter(|column| sheet(column)).map(|column| column[0]).fold(f64::INFINITY, f64::min);
+    let landscape = lowest - low.y <= LOW * size.y && share(&sheet) >= LANDSCAPE;
+    share(&|_| true) >= WHOLE && (floor >= FLOOR || landscape)
 }
 
 /// The lowest and the highest surface over the middle of each cell.

@@ -8,6 +8,7 @@ mod environment;
 mod far;
 mod footing;
 mod ground;
+mod lamplight;
 mod loader;
 mod material_draft;
 mod mtl;

@@ -108,7 +108,9 @@ mod tests {
         ] {
             assert!(sky(bad).unwrap_err().contains(words), "{bad}");
         }
-        assert!(degrees("181").is_err() && degrees("nan").is_err() && degrees("-1").is_err() && degrees("0") == Ok(0.0));
+        assert!(
+            degrees("181").is_err() && degrees("nan").is_err() && degrees("-1").is_err() && degrees("0") == Ok(0.0)
+        );
         assert!(up("x").is_err() && on_or_off("yes").is_err());
     }
 }

@@ -39,7 +39,9 @@ pub(super) fn comments(path: &Path) -> Result<String> {
     if groups.is_empty() {
         return Ok(String::new());
     }
-    let mut said = String::from("# The file's objects (o) and groups (g), which are one mesh here, with their faces and materials:\n");
+    let mut said = String::from(
+        "# The file's objects (o) and groups (g), which are one mesh here, with their faces and materials:\n",
+    );
     for Group { keyword, name, faces, materials } in groups.iter().take(MOST) {
         let materials = materials.iter().map(|name| quoted(name)).collect::<Vec<_>>().join(", ");
         let of = if materials.is_empty() { String::new() } else { format!(", {materials}") };

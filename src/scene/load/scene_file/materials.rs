@@ -96,11 +96,16 @@ fn table(material: &Material, draft: &Draft, folder: &Path) -> Result<String> {
         key("ambient", triple(m.ambient));
     }
     key("opacity", number(m.opacity));
+    // What has no albedo of its own here has the diffuse one, with its map.
+    let ambient_map = match (&draft.maps.ambient, draft.ambient, m.maps.ambient) {
+        (MapDraft::Unstated, None, Some(_)) if m.ambient != m.lambert => &draft.maps.diffuse,
+        (own, ..) => own,
+    };
     let maps = [
         ("diffuse_map", &draft.maps.diffuse),
         ("glossy_map", &draft.maps.glossy),
         ("emission_map", &draft.maps.emission),
-        ("ambient_map", &draft.maps.ambient),
+        ("ambient_map", ambient_map),
         ("opacity_map", &draft.maps.opacity),
     ];
     for (name, map) in maps {

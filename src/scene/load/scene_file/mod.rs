@@ -81,7 +81,11 @@ fn film(scene: &Scene) -> String {
         + &keys(&[
             ("width", film.width.to_string(), "pixels, 1 to 65536"),
             ("height", film.height.to_string(), ""),
-            ("# filter", "\"box\"".into(), "how a pixel weighs the light around it: \"box\", \"tent\", \"gaussian\", \"blackman-harris\""),
+            (
+                "# filter",
+                "\"box\"".into(),
+                "how a pixel weighs the light around it: \"box\", \"tent\", \"gaussian\", \"blackman-harris\"",
+            ),
             ("# filter_radius", number(film.filter_radius), "half the filter's width in pixels, above 0, at most 64"),
         ])
 }
@@ -98,7 +102,11 @@ fn sensor(scene: &Scene) -> String {
             ("fov", number(fov), "vertical field of view, between 0 and 180"),
         ),
         Projection::Orthographic { height } => (
-            ("kind", "\"orthographic\"".to_owned(), "parallel rays; or \"perspective\", with `fov` in place of `height`"),
+            (
+                "kind",
+                "\"orthographic\"".to_owned(),
+                "parallel rays; or \"perspective\", with `fov` in place of `height`",
+            ),
             ("height", number(height), "how much of the scene is seen from bottom to top, above 0"),
         ),
     };
@@ -111,7 +119,11 @@ fn sensor(scene: &Scene) -> String {
             ("target", point(sensor.target, scene.origin), "the point in the middle of the picture"),
             (up, triple(sensor.up), "a direction that points up in the picture"),
             extent,
-            ("# aperture", "0".into(), "radius of the opening of a lens; 0: everything is in focus. With one there may be:"),
+            (
+                "# aperture",
+                "0".into(),
+                "radius of the opening of a lens; 0: everything is in focus. With one there may be:",
+            ),
             ("# focus_distance", number(distance), "distance of the plane that is in focus, above 0"),
             ("# blades", "0".into(), "corners of the aperture, 3 to 64; 0 is a disk"),
             ("# blade_rotation", "0".into(), "by which the aperture is turned"),
@@ -119,9 +131,16 @@ fn sensor(scene: &Scene) -> String {
 }
 
 fn environment(bare: &BareMesh, folder: &Path) -> Result<String> {
-    let studio = ("sky", "\"studio\"".to_owned(), "the built-in grey sky with a soft key light from the upper left; or in its place:");
-    let image = |name: String| ("image", name, "a latitude-longitude image: its upper edge is +y, its middle -z, its right half +x");
-    let radiance = "from everywhere, or a factor to sky or image; 0 or more, in a unit of your choice: 1 is white in the PNG";
+    let studio = (
+        "sky",
+        "\"studio\"".to_owned(),
+        "the built-in grey sky with a soft key light from the upper left; or in its place:",
+    );
+    let image = |name: String| {
+        ("image", name, "a latitude-longitude image: its upper edge is +y, its middle -z, its right half +x")
+    };
+    let radiance =
+        "from everywhere, or a factor to sky or image; 0 or more, in a unit of your choice: 1 is white in the PNG";
     let rotate = ("# rotate", "0".to_owned(), "turns sky or image about +y, counter-clockwise seen from above");
     let other_image = ("# image", "\"sky.hdr\"".to_owned(), image(String::new()).2);
     let one = ("# radiance", "[1, 1, 1]".to_owned(), radiance);
@@ -178,7 +197,11 @@ fn render(scene: &Scene) -> String {
         + &keys(&[
             ("spp", settings.spp.to_string(), "samples a pixel, at least 1: four times as many have half the noise"),
             ("# exposure", number(settings.exposure), "stops from -64 to 64: the PNG shows radiance times 2^exposure"),
-            ("# sampler", "\"sobol\"".into(), "where the random numbers come from: \"sobol\", less noise, or \"independent\""),
+            (
+                "# sampler",
+                "\"sobol\"".into(),
+                "where the random numbers come from: \"sobol\", less noise, or \"independent\"",
+            ),
             ("# seed", settings.seed.to_string(), "of the random numbers, 0 to 4294967295"),
         ])
 }
@@ -195,11 +218,16 @@ fn object(bare: &BareMesh, path: &Path, folder: &Path) -> Result<String> {
         format!("[{x}, {y}, {z}, 0]")
     };
     let matrix = format!("[{}, {}, {}]", row(0), row(1), row(2));
-    let mut text = "\n# An instance of a mesh; there may be more of them, of this mesh and of others.\n[[object]]\n".to_owned()
+    let mut text = "\n# An instance of a mesh; there may be more of them, of this mesh and of others.\n[[object]]\n"
+        .to_owned()
         + &keys(&[
             ("mesh", quoted(&named(path, folder)?), "an OBJ file"),
             ("name", quoted(&object.name), "for messages"),
-            (smooth.0, smooth.1, "degrees, 0 to 180: without normals (vn), faces that meet at less share them; 0 is flat"),
+            (
+                smooth.0,
+                smooth.1,
+                "degrees, 0 to 180: without normals (vn), faces that meet at less share them; 0 is flat",
+            ),
             ("# vertex_colours", "true".into(), "false: the colours that the OBJ gives its vertices are left out"),
             ("# material", "\"NAME\"".into(), "the material that replaces all others on this instance"),
         ]);
@@ -209,7 +237,8 @@ fn object(bare: &BareMesh, path: &Path, folder: &Path) -> Result<String> {
         ("# translate", "[0, 0, 0]".to_owned(), "comes last"),
     ];
     text += &if turned {
-        keys(&[("matrix", matrix, "z up to y up, as rotate = [-90, 0, 0], to the last digit; or in its place:")]) + &keys(&placed)
+        keys(&[("matrix", matrix, "z up to y up, as rotate = [-90, 0, 0], to the last digit; or in its place:")])
+            + &keys(&placed)
     } else {
         keys(&placed) + &keys(&[("# matrix", IDENTITY.into(), "in place of these three")])
     };

@@ -2,8 +2,8 @@
 
 use super::foreign_words::{KEYS, NAMES};
 use super::tables::{
-    EnvironmentTable, FilmTable, GroundTable, IntegratorTable, LuminaireEntry, MaterialTable, ObjectTable, RenderTable, SceneFile,
-    SensorTable,
+    EnvironmentTable, FilmTable, GroundTable, IntegratorTable, LuminaireEntry, MaterialTable, ObjectTable, RenderTable,
+    SceneFile, SensorTable,
 };
 use crate::picture::linear;
 use crate::scene::load::near_name::near_name;

@@ -11,9 +11,9 @@ mod values;
 
 use super::choices::Choices;
 use super::ground::{self, Ground};
-use super::{bare_mesh, environment};
 use super::loader::Loader;
 use super::text_file::read_bytes;
+use super::{bare_mesh, environment};
 use crate::scene::{Projection, RenderSettings, Scene, Sensor};
 use crate::{Error, Result};
 use advice::{in_plain_words, wrong_brackets};

@@ -2,11 +2,15 @@
 
 use super::advice::name_hint;
 use super::file::File;
-use super::tables::{BuiltInSky, EnvironmentTable, FilmTable, IntegratorKind, IntegratorTable, SensorKind, SensorTable};
+use super::tables::{
+    BuiltInSky, EnvironmentTable, FilmTable, IntegratorKind, IntegratorTable, SensorKind, SensorTable,
+};
 use super::values::Triple;
 use crate::scene::load::near_name::instead_of;
 use crate::scene::load::{bare_mesh, environment};
-use crate::scene::{Environment, EnvironmentImage, Estimator, EstimatorChanges, FilmSettings, Integrator, Lens, Projection, Sensor};
+use crate::scene::{
+    Environment, EnvironmentImage, Estimator, EstimatorChanges, FilmSettings, Integrator, Lens, Projection, Sensor,
+};
 use crate::{Error, Result};
 use ::toml::Spanned;
 use glam::{DVec3, Vec3};
