@@ -294,3 +294,14 @@ fn a_lamp_that_lights_nothing_that_is_seen_is_not_enough() {
     let beside = room("v -1 0 0\nv 4 0 0\nv 4 0 3\nv -1 0 3\nf -4 -1 -2 -3\n");
     assert!(beside.environment.is_none(), "{:?}", beside.notes);
 }
+
+/// An object that is a lamp twice goes, and the ground behind it keeps its name.
+#[test]
+fn the_ground_is_known_after_objects_are_dropped() {
+    let lamp = "[[object]]\nmesh = \"mesh.obj\"\n";
+    let folder = with_mtl("newmtl m\nKe 1 1 1\n").with("scene.toml", format!("{SENSOR}[ground]\n{lamp}{lamp}"));
+    let scene = folder.load("scene.toml");
+    warned(&scene, &["dropped"]);
+    assert_eq!(scene.objects.len(), 2, "a lamp and the ground");
+    assert!(ground(&scene).is_some() && scene.objects[1].name == "ground");
+}

@@ -90,6 +90,10 @@ fn one_line_says_what_was_chosen() {
     let (code, report, _) = run(&folder, &["inspect", MODEL, "--sky", "none", "--ground", "off"]);
     assert!(code == 0 && report.contains("the picture will be black"), "{report}");
     assert!(report.contains("bare model: no sky, no ground"), "{report}");
+    let command = "`luminaire scene good.obj --sky 1,0.5,0 --ground on --smooth 30 --up z > good.toml`";
+    let words = ["inspect", "good.obj", "--up", "z", "--smooth", "30", "--ground", "on", "--sky", "1,.5,0"];
+    let (_, report, _) = run(&folder, &words);
+    assert!(report.contains(command), "{report}");
 }
 
 #[test]

@@ -105,14 +105,14 @@ pub(super) fn load(path: &Path, choices: &Choices) -> Result<BareMesh> {
     }
     scene.warnings.extend(scene.dark_because());
     let mut bare = BareMesh { scene, loader, sky, ground, smooth, up };
-    let note = bare.note(emitting);
+    let note = bare.note(emitting, choices);
     bare.scene.notes.push(note);
     Ok(bare)
 }
 
 impl BareMesh {
     /// What was chosen, in a line.
-    fn note(&self, emitting: f64) -> String {
+    fn note(&self, emitting: f64, choices: &Choices) -> String {
         let why = match emitting {
             0.0 => String::new(),
             few if few < LEAST_EMITTING => format!(" (only {} of its area emits)", percent(few)),
@@ -131,13 +131,27 @@ impl BareMesh {
             _ => format!(", normals smooth below {degrees} degrees"),
         });
         let up = if self.up == Up::Z { ", turned from z up to y up" } else { "" };
-        let name = self.scene.path.to_string_lossy();
+        let name = for_a_shell(&self.scene.path.to_string_lossy());
         let stem = self.scene.path.file_stem().unwrap_or_default().to_string_lossy();
-        let (name, file) = (for_a_shell(&name), for_a_shell(&format!("{stem}.toml")));
-        format!(
-            "bare model: {light}, {ground}{smooth}{up}; `luminaire scene {name} > {file}` writes that down, to be changed"
-        )
+        let file = for_a_shell(&format!("{stem}.toml"));
+        let command = format!("luminaire scene {name}{} > {file}", options(choices));
+        format!("bare model: {light}, {ground}{smooth}{up}; `{command}` writes that down, to be changed")
     }
+}
+
+/// Choices as options of the command line, each behind a blank.
+fn options(choices: &Choices) -> String {
+    let sky = choices.sky.as_ref().map(|sky| match sky {
+        Sky::Studio => "studio".to_owned(),
+        Sky::None => "none".into(),
+        Sky::Even(radiance) => format!("{},{},{}", radiance.x, radiance.y, radiance.z),
+        Sky::Image(path) => for_a_shell(&path.to_string_lossy()),
+    });
+    let ground = choices.ground.map(|on| if on { "on" } else { "off" }.to_owned());
+    let smooth = choices.smooth.map(|degrees| degrees.to_string());
+    let up = choices.up.map(|up| if up == Up::Z { "z" } else { "y" }.to_owned());
+    let given = [("sky", sky), ("ground", ground), ("smooth", smooth), ("up", up)];
+    given.into_iter().filter_map(|(name, value)| Some(format!(" --{name} {}", value?))).collect()
 }
 
 /// A word of a command as a shell reads it.

@@ -9,7 +9,7 @@ const RAYS: u32 = 16;
 /// From what it sees, so many points on lamps are looked for.
 const LAMP_POINTS: usize = 8;
 /// A lamp that reaches less than this share of what is seen does not light it.
-const LEAST_LIT: f64 = 0.05;
+const LEAST_LIT: f64 = 0.2;
 /// Larger models are not looked at: each ray is held against each triangle.
 const MOST_TRIANGLES: u64 = 1 << 20;
 /// Rays begin and end off surfaces by this share of their length.
