@@ -108,6 +108,7 @@ fn what_brings_its_own_ground_gets_none() {
     for (what, text, expected) in [
         ("a floor", floor.clone(), false),
         ("a thing on a floor", floor.clone() + &block([1.0, 2.0, 1.0], 5), false),
+        ("much on a floor", floor.clone() + &block([3.0, 2.0, 2.5], 5), false),
         ("a backdrop", floor.clone() + &wall, false),
         ("a landscape", sheet(|x, z| (7.0 * x).sin() * (5.0 * z).cos() * 0.3), false),
         ("a landscape with a house", sheet(|x, z| 0.4 * x * z) + &block([0.1, 0.8, 0.1], 170), false),
