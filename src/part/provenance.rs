@@ -55,6 +55,9 @@ impl Provenance {
             integrator,
             settings,
             warnings: _,
+            notes: _,
+            // Its triangles are among the others.
+            ground: _,
             files: _,
         } = scene;
         let FilmSettings { width, height, filter, filter_radius } = *film;

@@ -232,7 +232,7 @@ impl Reference {
 
     /// A ray of a luminaire towards the sphere that holds the scene; together the rays are evenly distributed.
     fn ray_from(&self, luminaire: &Luminaire, ray: u32) -> (DVec3, DVec3) {
-        let (low, high) = self.scene.world_bounds();
+        let (low, high) = self.scene.model_bounds();
         let (center, radius) = (0.5 * (low + high), 0.5 * (high - low).length());
         // Points of a spiral: evenly along one axis, around the other by the golden ratio.
         let u = (f64::from(ray) + 0.5) / f64::from(RAYS);

@@ -24,6 +24,8 @@ pub fn empty(width: u32, height: u32) -> Scene {
         integrator: Integrator::Path(Estimator::default()),
         settings: RenderSettings { sampler: Sampler::Independent, ..RenderSettings::default() },
         warnings: vec![],
+        notes: vec![],
+        ground: None,
         files: vec![],
     }
 }

@@ -85,7 +85,7 @@ impl LuminaireTable {
                 entries.push(SampledLuminaire::Area(EmissiveTriangle { object, triangle, vertices, material, normal }));
             }
         }
-        let (low, high) = scene.world_bounds();
+        let (low, high) = scene.model_bounds();
         let (center, radius) = (0.5 * (low + high), 0.5 * (high - low).length());
         let environment = scene.environment.as_ref().and_then(EnvironmentDistribution::new);
         entries.extend(environment.as_ref().map(|_| SampledLuminaire::Environment));

@@ -20,6 +20,7 @@ mod overlap;
 pub(crate) mod rounding;
 mod sensor;
 mod settings;
+mod studio_sky;
 mod texture;
 mod world;
 
@@ -32,7 +33,7 @@ pub use estimator::{
 };
 pub use filter::Filter;
 pub use first_view::FirstView;
-pub use load::load;
+pub use load::{Choices, SceneFile, Sky, Up, load, load_with, scene_file};
 pub use luminaire::Luminaire;
 pub use luminaire_table::{EmissiveTriangle, LuminaireTable, SampledLuminaire};
 pub use material::{Maps, Material};

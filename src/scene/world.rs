@@ -41,6 +41,10 @@ pub struct Scene {
     pub settings: RenderSettings,
     /// What the loader had to guess, drop or scale; one sentence each, with file and line where there is one.
     pub warnings: Vec<String>,
+    /// What the loader chose where a bare model says nothing, one sentence each: no reason to worry, but to know.
+    pub notes: Vec<String>,
+    /// The object that is a ground which the loader made, if there is one: it reaches far beyond the model.
+    pub ground: Option<u32>,
     /// Every file that the scene was loaded from or that one of its files names, so that none of them is written to: the scene file, meshes, MTL files, images,
     /// those that nothing shows or that cannot be used included. A file that is missing is none of them.
     pub files: Vec<PathBuf>,
@@ -69,12 +73,12 @@ impl Scene {
         &self.materials[object.material.unwrap_or(triangle.material) as usize]
     }
 
-    /// World-space bounding box of all triangles of all instances, the smallest: every corner counts, so that it takes longer than
-    /// [`Scene::world_bounds`].
+    /// World-space bounding box of all triangles of all instances but the ground that the loader made, the smallest: every corner counts, so that
+    /// it takes longer than [`Scene::model_bounds`].
     pub fn tight_bounds(&self) -> (DVec3, DVec3) {
         let mut corners: Vec<Option<Vec<DVec3>>> = vec![None; self.meshes.len()];
         let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        for object in &self.objects {
+        for (_, object) in (0..).zip(&self.objects).filter(|(index, _)| self.ground != Some(*index)) {
             let to_world = widen(object.object_to_world);
             let mesh = &self.meshes[object.mesh as usize];
             let corners = corners[object.mesh as usize].get_or_insert_with(|| mesh.corners());
@@ -95,10 +99,19 @@ impl Scene {
 
     /// World-space bounding box of all instances (of the corners of the meshes' own boxes, so not always the smallest).
     pub fn world_bounds(&self) -> (glam::DVec3, glam::DVec3) {
+        self.bounds_of(|_| true)
+    }
+
+    /// [`Scene::world_bounds`] without the ground that the loader made: what is looked at.
+    pub fn model_bounds(&self) -> (glam::DVec3, glam::DVec3) {
+        self.bounds_of(|object| self.ground != Some(object))
+    }
+
+    fn bounds_of(&self, counts: impl Fn(u32) -> bool) -> (glam::DVec3, glam::DVec3) {
         let boxes: Vec<_> = self.meshes.iter().map(|mesh| mesh.bounds()).collect();
         let mut low = glam::DVec3::INFINITY;
         let mut high = glam::DVec3::NEG_INFINITY;
-        for object in &self.objects {
+        for (_, object) in (0..).zip(&self.objects).filter(|(index, _)| counts(*index)) {
             let to_world = widen(object.object_to_world);
             let (a, b) = boxes[object.mesh as usize];
             let moved = moved_box([a, b].map(|corner| corner.as_dvec3()), &to_world);

@@ -23,6 +23,7 @@ mod pictures;
 mod scattering;
 mod scenes;
 mod sensor;
+mod studio;
 mod touching_glass;
 mod twins;
 mod vertex_colours;

@@ -151,10 +151,22 @@ fn many_of_anything_take_time_in_proportion() {
     let materials = lines(&|k| format!("newmtl m{k}\nmap_{} x\n", k % 1000));
     let uses = lines(&|k| format!("usemtl m{k}\nf 1 2 3\n"));
     let folder = obj(format!("mtllib mesh.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n{uses}")).with("mesh.mtl", materials);
-    assert_eq!(folder.load("mesh.obj").materials.len(), count + 1);
+    assert_eq!(folder.load("mesh.obj").materials.len(), count + 2, "the default and the ground");
     // A smoothing group for each face, all at one point.
     let groups = lines(&|k| format!("s {}\nf 1 2 3\n", k + 1));
-    assert_eq!(obj(format!("v 0 0 0\nv 1 0 0\nv 0 1 0\n{groups}")).load("mesh.obj").triangle_count(), count as u64);
+    let scene = obj(format!("v 0 0 0\nv 1 0 0\nv 0 1 0\n{groups}")).load("mesh.obj");
+    assert_eq!(scene.meshes[0].triangles.len(), count);
+    // Normals by angle, which compare each face with each at a point: fans of all sizes.
+    for fan in [100, 4000, count] {
+        let corners = lines(&|k| {
+            let (sin, cos) = (k as f64).sin_cos();
+            format!("v {cos} 0 {sin}\n")
+        });
+        let faces = lines(&|k| format!("f {} {} {}\n", count + 1 + k / fan, 1 + k, 1 + (k + 1) % count));
+        let tips = lines(&|k| format!("v {} 1 0\n", 1e-6 * k as f64));
+        let scene = obj(format!("{corners}{tips}{faces}")).load("mesh.obj");
+        assert_eq!(scene.meshes[0].triangles.len(), count);
+    }
     // One mesh, many times.
     let objects = "[[object]]\nmesh = \"mesh.obj\"\n".repeat(300);
     let scene = folder.with("scene.toml", objects).load("scene.toml");

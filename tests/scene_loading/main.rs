@@ -1,5 +1,6 @@
 //! What a user relies on when a scene is loaded: what loads, what is repaired with a warning, and what each error says.
 
+mod bare_models;
 mod bodies;
 mod colours;
 mod far;
@@ -12,6 +13,7 @@ mod obj;
 mod own_scenes;
 mod pictures;
 mod polygons;
+mod scene_files;
 mod settings;
 mod smoothing;
 mod textures;

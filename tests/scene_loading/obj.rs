@@ -2,7 +2,7 @@
 
 use super::*;
 use glam::{Vec2, Vec3};
-use luminaire::scene::{Estimator, Integrator, Luminaire};
+use luminaire::scene::{Estimator, Integrator};
 
 #[test]
 fn endings_of_lines_and_files_do_not_matter() {
@@ -17,13 +17,13 @@ fn endings_of_lines_and_files_do_not_matter() {
     ] {
         let scene = obj(&text).load("mesh.obj");
         assert_eq!(scene.meshes[0].positions, [Vec3::ZERO, Vec3::X, Vec3::Y], "{text:?}");
-        assert_eq!(scene.triangle_count(), 1);
+        assert_eq!(scene.meshes[0].triangles.len(), 1);
     }
 }
 
 #[test]
 fn the_ending_of_the_name_is_compared_without_case() {
-    assert_eq!(Folder::new().with("MESH.OBJ", TRIANGLE).load("MESH.OBJ").triangle_count(), 1);
+    assert_eq!(Folder::new().with("MESH.OBJ", TRIANGLE).load("MESH.OBJ").meshes[0].triangles.len(), 1);
 }
 
 #[test]
@@ -31,7 +31,7 @@ fn indices_may_be_negative_or_point_ahead() {
     let behind = obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 2\nf -3//-1 -2//-1 -1//-1\n").load("mesh.obj");
     assert_eq!(behind.meshes[0].normals, [Vec3::Z; 3]);
     let ahead = obj("usemtl a\nf 1 2 3\nusemtl b\nf 3 2 1\nv 0 0 0\nv 1 0 0\nv 0 1 0\n").load("mesh.obj");
-    assert_eq!(ahead.triangle_count(), 2);
+    assert_eq!(ahead.meshes[0].triangles.len(), 2);
 }
 
 #[test]
@@ -44,7 +44,7 @@ fn polygons_become_fans() {
 #[test]
 fn all_groups_are_one_mesh() {
     let scene = obj(format!("o a\n{TRIANGLE}o b\ng c d\nv 5 5 5\nf 1 2 4\ns 1\nl 1 2 3\np 1\n")).load("mesh.obj");
-    assert_eq!((scene.meshes.len(), scene.triangle_count()), (1, 2));
+    assert_eq!((scene.objects.len(), scene.meshes[0].triangles.len()), (2, 2), "one, and the ground");
     assert_eq!(scene.meshes[0].name, "mesh.obj");
 }
 
@@ -121,7 +121,7 @@ fn colours_and_weights_of_vertices() {
 #[test]
 fn degenerate_faces_are_dropped_with_one_warning() {
     let scene = obj(format!("{TRIANGLE}f 1 1 2\nf 2 3 2\nv 2 0 0\nf 1 2 4\nf 1 2\nf\nf 3\n")).load("mesh.obj");
-    assert_eq!(scene.triangle_count(), 1);
+    assert_eq!(scene.meshes[0].triangles.len(), 1);
     warned(&scene, &["3 zero-area"]);
     warned(&scene, &["mesh.obj:9", "fewer than 3", "2 more"]);
 }
@@ -258,11 +258,11 @@ fn coordinates_beyond_what_single_precision_can_square() {
 }
 
 #[test]
-fn a_bare_obj_that_is_dark_gets_a_light_and_a_framing_camera() {
+fn a_bare_obj_that_is_dark_gets_a_sky_and_a_framing_camera() {
     let scene = obj("v 10 0 0\nv 14 0 0\nv 10 3 0\nf 1 2 3\n").load("mesh.obj");
-    assert!(matches!(scene.luminaires[..], [Luminaire::Infinite { .. }]));
-    assert!(matches!(scene.integrator, Integrator::Simple { ambient } if ambient != Vec3::ZERO));
-    warned(&scene, &["mesh.obj", "key light", "ambient"]);
+    assert!(scene.luminaires.is_empty() && scene.environment.is_some());
+    assert_eq!(scene.integrator, Integrator::Path(Estimator::default()));
+    assert_eq!(scene.warnings, Vec::<String>::new());
     // Every vertex lies inside the cone around the picture, which is 38 degrees wide and high.
     let sensor = &scene.sensor;
     let view = (sensor.target - sensor.position).normalize();
@@ -276,7 +276,7 @@ fn a_bare_obj_that_is_dark_gets_a_light_and_a_framing_camera() {
 #[test]
 fn a_bare_obj_that_emits_is_path_traced() {
     let scene = with_mtl("newmtl m\nKe 1 2 3\n").load("mesh.obj");
-    assert!(scene.luminaires.is_empty());
+    assert!(scene.luminaires.is_empty() && scene.environment.is_none() && scene.ground.is_none());
     assert_eq!(scene.integrator, Integrator::Path(Estimator::default()));
     assert_eq!(scene.warnings, Vec::<String>::new());
 }
@@ -291,16 +291,15 @@ fn lamp_over(floor: u32) -> Scene {
 }
 
 #[test]
-fn a_bare_obj_of_which_next_to_nothing_emits_gets_a_light_too() {
+fn a_bare_obj_of_which_next_to_nothing_emits_gets_a_sky_too() {
     let scene = lamp_over(1100);
-    assert_eq!(scene.luminaires.len(), 1);
-    assert!(matches!(scene.integrator, Integrator::Simple { ambient } if ambient != Vec3::ZERO));
-    assert_eq!(scene.warnings.len(), 1, "{:?}", scene.warnings);
-    warned(&scene, &["mesh.obj", "only 0.0908 %", "key light", "ambient"]);
+    assert!(scene.environment.is_some());
+    assert_eq!(scene.warnings, Vec::<String>::new());
+    assert!(scene.notes[0].contains("only 0.0908 %") && scene.notes[0].contains("studio sky"), "{:?}", scene.notes);
     assert_eq!(first_material(&scene).emission, Vec3::ONE, "it still glows");
 
     let scene = lamp_over(900);
-    assert!(scene.luminaires.is_empty());
+    assert!(scene.luminaires.is_empty() && scene.environment.is_none());
     assert_eq!(scene.integrator, Integrator::Path(Estimator::default()));
     assert_eq!(scene.warnings, Vec::<String>::new());
 }

@@ -11,6 +11,7 @@ mod inspect;
 mod man;
 mod merge;
 mod render;
+mod scene;
 mod shared;
 mod stability;
 mod view;
@@ -32,6 +33,7 @@ Examples:
   luminaire view model.obj
   luminaire compare model.exr reference.exr
   luminaire inspect model.obj
+  luminaire scene model.obj > model.toml
   luminaire devices
   luminaire stability --list
   luminaire bench --quick
@@ -62,6 +64,8 @@ enum Command {
     Devices,
     /// Show what was loaded from a scene, and every warning.
     Inspect(inspect::Options),
+    /// Write the scene file that a bare OBJ gets, with every key explained.
+    Scene(scene::Options),
     /// Run methods over the ranges in which they can fail, on every backend here: charts, numbers, and a page.
     Stability(stability::Options),
     /// Measure speed against accuracy: scenes, backends and estimators side by side, as a page, charts and numbers.
@@ -90,6 +94,7 @@ fn main() -> ExitCode {
         Command::Compare(options) => compare::run(options),
         Command::Devices => devices::run(),
         Command::Inspect(options) => inspect::run(options),
+        Command::Scene(options) => scene::run(options),
         Command::Stability(options) => stability::run(options),
         Command::Bench(options) => bench::run(options),
         Command::Completions(options) => completions::run(options, Args::command()),

@@ -6,10 +6,11 @@ use crate::shared::estimator::EstimatorOptions;
 use crate::shared::film_size::FilmSize;
 use crate::shared::foreseen::foresee;
 use crate::shared::printing::{note, warn};
+use crate::shared::scene_options::SceneOptions;
 use crate::shared::tone_name::{ToneName, exposure};
 use luminaire::Result;
 use luminaire::film::Film;
-use luminaire::scene::{self, Exposure};
+use luminaire::scene::Exposure;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -63,6 +64,8 @@ pub struct Options {
     seed: Option<u32>,
     #[command(flatten)]
     estimator: EstimatorOptions,
+    #[command(flatten)]
+    of_scene: SceneOptions,
 
     /// What traces the rays to begin with.
     #[arg(long, value_name = "NAME", default_value = "auto", help_heading = "Device")]
@@ -82,7 +85,7 @@ fn indented(text: &str) -> String {
 pub fn run(options: &Options) -> Result<ExitCode> {
     let request = backend_name::request(options.backend, options.device.as_deref())?;
     options.estimator.check()?;
-    let mut scene = scene::load(&options.scene)?;
+    let mut scene = options.of_scene.load(&options.scene)?;
     let own_film = scene.film;
     FilmSize { width: options.width, height: options.height, largest: LARGEST_SIDE }.apply(&mut scene.film);
     Film::check_size(scene.film.width, scene.film.height)?;
@@ -91,6 +94,7 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     scene.settings.exposure = options.exposure.unwrap_or(scene.settings.exposure);
     scene.settings.tone = options.tone.map_or(scene.settings.tone, ToneName::tone);
     let foreseen = foresee(&mut scene, &own_film);
+    scene.notes.iter().for_each(|chosen| note(chosen));
     scene.warnings.iter().for_each(warn);
     foreseen.found.iter().for_each(|found| note(found));
     luminaire_view::run(luminaire_view::Options { scene, request, spp: options.spp.unwrap_or(u32::MAX) })?;

@@ -23,7 +23,7 @@ fn inspect_lists_the_fallback_where_it_is_seen() {
     folder.write("own.mtl", "newmtl default\nKd .1 .2 .3\n");
     let names = |obj: &str| {
         folder.write("a.obj", obj);
-        let output = folder.luminaire(&["inspect", "a.obj"]).output().unwrap();
+        let output = folder.luminaire(&["inspect", "a.obj", "--ground", "off"]).output().unwrap();
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
         let said = String::from_utf8_lossy(&output.stdout).into_owned();
         let rows = said.lines().map(str::trim).skip_while(|line| *line != "materials").skip(2);

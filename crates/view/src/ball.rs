@@ -16,9 +16,9 @@ pub struct Ball {
 }
 
 impl Ball {
-    /// The ball around a scene's box.
+    /// The ball around a scene's box, without a ground that was made for it.
     pub fn around(scene: &Scene) -> Self {
-        let (low, high) = scene.world_bounds();
+        let (low, high) = scene.model_bounds();
         let reach = low.abs().max(high.abs()).max_element();
         Ball { center: 0.5 * (low + high), radius: (0.5 * low.distance(high)).max(NEAREST * reach) }
     }

@@ -1,41 +1,70 @@
-//! What an OBJ file needs to become a picture, and does not say: a camera, and a light if next to nothing in it emits.
+//! What an OBJ file needs to become a picture, and does not say: a camera, and a sky and a ground if next to nothing in it emits, or not where it is looked at.
 
+use super::choices::{Choices, SMOOTH, Sky, Up};
+use super::ground::{self, Ground};
 use super::loader::Loader;
-use super::obj;
+use super::{environment, footing, lamplight, obj};
 use crate::Result;
 use crate::scene::{
-    Estimator, FilmSettings, Filter, Integrator, Luminaire, Object, Projection, RenderSettings, Scene, Sensor, widen,
+    Estimator, FilmSettings, Filter, FirstView, Integrator, Object, Projection, RenderSettings, Scene, Sensor, widen,
 };
-use glam::{Affine3A, DAffine3, DVec3, Vec3};
+use glam::{Affine3A, DAffine3, DMat3, DVec3, Vec3};
 use std::path::Path;
 
 /// Vertical field of view of the framing camera, in degrees.
 const FOV: f32 = 40.0;
-/// The direction in which the key light travels: from the upper left, behind the camera.
-const KEY_DIRECTION: DVec3 = DVec3::new(0.3, -0.8, -0.7);
-/// Irradiance of the key light: a white surface that faces it has a radiance of 0.7, and with the ambient term 0.9: not yet clipped.
-const KEY_IRRADIANCE: f32 = 2.2;
-/// Ambient radiance beside the key light.
-const AMBIENT: f32 = 0.2;
 /// A scene whose emitting triangles have less than this share of its area is not meant to be lit by them alone: they glow, as
 /// lava in a landscape does. The lamp of a Cornell box has seven times as much.
 const LEAST_EMITTING: f64 = 1e-3;
+/// From z up to y up, to the last digit: x stays, z becomes y, y becomes -z.
+pub(super) const Z_UP: DMat3 = DMat3::from_cols(DVec3::X, DVec3::NEG_Z, DVec3::Y);
 
 /// Size and filter of the picture where nothing is said.
 pub(super) const FILM: FilmSettings = FilmSettings { width: 512, height: 512, filter: Filter::Box, filter_radius: 0.5 };
 
-/// Loads a bare OBJ.
-pub(super) fn load(path: &Path) -> Result<Scene> {
+/// A bare OBJ as a scene, and what was chosen for it.
+#[derive(Debug)]
+pub(super) struct BareMesh {
+    pub scene: Scene,
+    /// What the materials are made of.
+    pub loader: Loader,
+    /// The light from all around.
+    pub sky: Sky,
+    /// The height of the ground in the coordinates of the file, turned with it.
+    pub ground: Option<f64>,
+    /// The angle below which faces share normals, where that was chosen and makes a difference, or was asked for.
+    pub smooth: Option<f32>,
+    /// Which axis was up.
+    pub up: Up,
+    /// Where the camera stands, in words.
+    pub place: String,
+}
+
+/// Loads a bare OBJ, as `choices` say or as suits it.
+pub(super) fn load(path: &Path, choices: &Choices) -> Result<BareMesh> {
     let mut loader = Loader::new(Vec::new());
-    let mesh = loader.mesh(path, obj::Reading::default())?;
+    let smooth = choices.smooth.unwrap_or(SMOOTH);
+    let how = obj::Reading {
+        smooth: Some(smooth.to_bits()),
+        smooth_if_unsaid: choices.smooth.is_none(),
+        without_colours: false,
+    };
+    let mesh = loader.mesh(path, how)?;
+    let smooth = choices.smooth.or(loader.smoothed[mesh as usize].then_some(smooth));
     let object = Object { name: obj::file_name(path), mesh, object_to_world: Affine3A::IDENTITY, material: None };
     let mut objects = vec![object];
-    let origin = loader.settle(&mut objects, &[DAffine3::IDENTITY]);
+    let up = choices.up.unwrap_or(Up::Y);
+    let to_world = match up {
+        Up::Y => DAffine3::IDENTITY,
+        Up::Z => DAffine3::from_mat3(Z_UP),
+    };
+    objects[0].object_to_world = to_world.as_affine3a();
+    let origin = loader.settle(&mut objects, &[to_world]);
     let (materials, textures) = loader.finish_materials(&objects);
     let mut scene = Scene {
         path: path.to_owned(),
         origin,
-        meshes: loader.meshes,
+        meshes: std::mem::take(&mut loader.meshes),
         objects,
         materials,
         textures,
@@ -50,30 +79,89 @@ pub(super) fn load(path: &Path) -> Result<Scene> {
         },
         film: FILM,
         integrator: Integrator::Path(Estimator::default()),
-        settings: RenderSettings::default(),
-        files: loader.files,
-        warnings: loader.warnings,
+        settings: RenderSettings::automatic(),
+        files: std::mem::take(&mut loader.files),
+        warnings: std::mem::take(&mut loader.warnings),
+        notes: Vec::new(),
+        ground: None,
     };
-    scene.sensor = framing_sensor(&scene);
-    let emitting = emitting_share(&scene);
-    if emitting < LEAST_EMITTING {
-        scene.luminaires.push(Luminaire::Infinite {
-            direction: KEY_DIRECTION.normalize().as_vec3(),
-            irradiance: Vec3::splat(KEY_IRRADIANCE),
-        });
-        scene.integrator = Integrator::Simple { ambient: Vec3::splat(AMBIENT) };
-        let why = if scene.triangles_emit() {
-            format!("only {} of its area emits light, too little to see the rest by", percent(emitting))
-        } else {
-            "nothing in it emits light".into()
-        };
-        scene.warnings.push(format!(
-            "{}: {why}, so it gets a key light at infinity and an ambient term (the simple ray tracer); \
-             write a scene file for anything better",
-            path.display()
-        ));
+    let FirstView { sensor, place } = scene.first_view(Vec3::Y);
+    scene.sensor = sensor;
+    // As a scene file can say it in the coordinates of the files.
+    for point in [&mut scene.sensor.position, &mut scene.sensor.target] {
+        *point = (point.as_dvec3() + origin - origin).as_vec3();
     }
-    Ok(scene)
+    let emitting = emitting_share(&scene);
+    let lit = emitting >= LEAST_EMITTING && (choices.sky.is_some() || lamplight::reaches_what_is_seen(&scene));
+    let sky = choices.sky.clone().unwrap_or(if lit { Sky::None } else { Sky::Studio });
+    scene.environment = environment::of(&sky, &mut scene.files, &mut scene.warnings)?;
+    let height = ground::height(&scene);
+    let ground = choices.ground.unwrap_or_else(|| {
+        let above = f64::from(scene.sensor.position.y) + origin.y > height;
+        scene.environment.is_some() && above && !footing::brings_its_ground(&scene)
+    });
+    let ground = ground.then_some(height);
+    if ground.is_some() {
+        ground::add(&mut scene, &Ground { height: ground, ..Ground::default() });
+    }
+    scene.warnings.extend(scene.dark_because());
+    let mut bare = BareMesh { scene, loader, sky, ground, smooth, up, place };
+    let note = bare.note(emitting, choices);
+    bare.scene.notes.push(note);
+    Ok(bare)
+}
+
+impl BareMesh {
+    /// What was chosen, in a line.
+    fn note(&self, emitting: f64, choices: &Choices) -> String {
+        let why = match emitting {
+            0.0 => String::new(),
+            few if few < LEAST_EMITTING => format!(" (only {} of its area emits)", percent(few)),
+            _ => " beside what emits in it".into(),
+        };
+        let light = match &self.sky {
+            Sky::Studio => format!("studio sky{why}"),
+            Sky::Image(path) => format!("the sky of {}", path.display()),
+            Sky::Even(radiance) => format!("a sky of radiance {} {} {}", radiance.x, radiance.y, radiance.z),
+            Sky::None if emitting > 0.0 => "lit by what emits in it".into(),
+            Sky::None => "no sky".into(),
+        };
+        let ground = self.ground.map_or("no ground".into(), |height| format!("ground at y = {height}"));
+        let smooth = self.smooth.map_or(String::new(), |degrees| match degrees {
+            0.0 => ", normals flat".into(),
+            _ => format!(", normals smooth below {degrees} degrees"),
+        });
+        let up = if self.up == Up::Z { ", turned from z up to y up" } else { "" };
+        let name = for_a_shell(&self.scene.path.to_string_lossy());
+        let stem = self.scene.path.file_stem().unwrap_or_default().to_string_lossy();
+        let file = for_a_shell(&format!("{stem}.toml"));
+        let command = format!("luminaire scene {name}{} > {file}", options(choices));
+        format!(
+            "bare model: {light}, {ground}{smooth}{up}; the camera stands {}; `{command}` writes that down, to be changed",
+            self.place
+        )
+    }
+}
+
+/// Choices as options of the command line, each behind a blank.
+fn options(choices: &Choices) -> String {
+    let sky = choices.sky.as_ref().map(|sky| match sky {
+        Sky::Studio => "studio".to_owned(),
+        Sky::None => "none".into(),
+        Sky::Even(radiance) => format!("{},{},{}", radiance.x, radiance.y, radiance.z),
+        Sky::Image(path) => for_a_shell(&path.to_string_lossy()),
+    });
+    let ground = choices.ground.map(|on| if on { "on" } else { "off" }.to_owned());
+    let smooth = choices.smooth.map(|degrees| degrees.to_string());
+    let up = choices.up.map(|up| if up == Up::Z { "z" } else { "y" }.to_owned());
+    let given = [("sky", sky), ("ground", ground), ("smooth", smooth), ("up", up)];
+    given.into_iter().filter_map(|(name, value)| Some(format!(" --{name} {}", value?))).collect()
+}
+
+/// A word of a command as a shell reads it.
+fn for_a_shell(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "/._-+,:@%".contains(c);
+    if word.chars().all(plain) { word.to_owned() } else { format!("'{}'", word.replace('\'', "'\\''")) }
 }
 
 /// The emitting triangles' share of the area of all triangles, from 0 to 1.
@@ -97,9 +185,4 @@ fn emitting_share(scene: &Scene) -> f64 {
 /// A small share in words.
 fn percent(share: f64) -> String {
     if share < 1e-6 { "less than 0.0001 %".into() } else { format!("{:.4} %", 100.0 * share) }
-}
-
-/// The camera that [`Scene::first_view`] finds.
-fn framing_sensor(scene: &Scene) -> Sensor {
-    scene.first_view(Vec3::Y).sensor
 }

@@ -1,18 +1,44 @@
-//! The image of an environment.
+//! Environments, and their images.
 
+use super::choices::Sky;
+use super::near_name::instead_of;
 use crate::picture::decode::ImageFile;
-use crate::scene::EnvironmentImage;
+use crate::scene::{Environment, EnvironmentImage};
+use crate::{Error, Result};
 use glam::Vec3;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Most texels of an environment, 16384 x 8192: choosing among them takes several times the memory of the image itself.
 const MOST_TEXELS: u64 = 1 << 27;
+
+/// The environment that a chosen sky is; none if there is none or it is black, the latter with a warning.
+///
+/// # Errors
+/// [`Error::Read`] if its image cannot be used.
+pub(super) fn of(sky: &Sky, files: &mut Vec<PathBuf>, warnings: &mut Vec<String>) -> Result<Option<Environment>> {
+    let (radiance, image) = match sky {
+        Sky::None => return Ok(None),
+        Sky::Even(radiance) if *radiance == Vec3::ZERO => return Ok(None),
+        Sky::Even(radiance) => (*radiance, None),
+        Sky::Studio => (Vec3::ONE, Some(EnvironmentImage::studio())),
+        Sky::Image(path) => {
+            files.extend(Some(path.clone()).filter(|path| path.is_file()));
+            let read = read(path, warnings).map_err(|reason| Error::read(path, reason + &instead_of(path)))?;
+            if read.is_none() {
+                return Ok(None);
+            }
+            (Vec3::ONE, read)
+        }
+    };
+    Ok(Some(Environment { radiance, image: image.map(Arc::new), rotation: 0.0 }))
+}
 
 /// Reads a latitude-longitude image; none if it is black. What is negative or not finite is replaced, with a warning.
 ///
 /// # Errors
 /// In words that can follow the file's name.
-pub(super) fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Option<EnvironmentImage>, String> {
+pub(super) fn read(path: &Path, warnings: &mut Vec<String>) -> std::result::Result<Option<EnvironmentImage>, String> {
     let too_many = |texels| {
         format!("it has {texels} texels, and an environment at most {MOST_TEXELS}: make a smaller image of it")
     };

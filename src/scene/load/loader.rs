@@ -22,7 +22,7 @@ pub(super) struct Loader {
     /// Every file that was read or that a file names and that is there.
     pub files: Vec<PathBuf>,
     /// Materials as far as they are known; number 0 is the fallback, "default".
-    drafts: Vec<Draft>,
+    pub drafts: Vec<Draft>,
     /// What the scene file says about materials, by name.
     overrides: Vec<Draft>,
     /// Materials that only the scene file defines.
@@ -33,6 +33,8 @@ pub(super) struct Loader {
     without_uv: Vec<Vec<WithoutUv>>,
     /// Where each mesh lies in the coordinates of its file.
     places: Vec<FilePlace>,
+    /// For each mesh, whether [`obj::Reading::smooth`] made a difference.
+    pub smoothed: Vec<bool>,
     /// By file and how it was read.
     mesh_files: HashMap<(PathBuf, obj::Reading), u32>,
     /// By material, the one that meshes with coloured vertices show instead.
@@ -61,6 +63,7 @@ impl Loader {
             named: Vec::new(),
             without_uv: Vec::new(),
             places: Vec::new(),
+            smoothed: Vec::new(),
             mesh_files: HashMap::new(),
             coloured: HashMap::new(),
             libraries: HashMap::new(),
@@ -76,7 +79,7 @@ impl Loader {
         if let Some(mesh) = self.mesh_files.get(&identity) {
             return Ok(*mesh);
         }
-        let obj::Obj { mut mesh, place, materials, libraries, without_uv, warnings } = obj::read(path, how)?;
+        let obj::Obj { mut mesh, place, materials, libraries, without_uv, smoothed, warnings } = obj::read(path, how)?;
         self.files.push(path.to_owned());
         // The same file read another way has the same faults.
         let first = !self.mesh_files.keys().any(|(file, _)| *file == identity.0);
@@ -111,6 +114,7 @@ impl Loader {
         let index = self.meshes.len() as u32;
         self.meshes.push(mesh.into());
         self.places.push(place);
+        self.smoothed.push(smoothed);
         self.named.push(named);
         let at = |line| format!("{}:{line}", path.display());
         let without_uv =

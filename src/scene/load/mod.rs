@@ -3,8 +3,12 @@
 mod alike;
 mod bare_mesh;
 mod bodies;
+mod choices;
 mod environment;
 mod far;
+mod footing;
+mod ground;
+mod lamplight;
 mod loader;
 mod material_draft;
 mod mtl;
@@ -13,10 +17,14 @@ mod near_name;
 mod obj;
 mod other_formats;
 mod polygon;
+mod scene_file;
 mod texel_faults;
 mod text_file;
 mod texture;
 mod toml;
+
+pub use choices::{Choices, Sky, Up};
+pub use scene_file::{SceneFile, scene_file};
 
 use crate::scene::Scene;
 use crate::{Error, Result};
@@ -27,15 +35,27 @@ use std::path::Path;
 const LARGEST_COORDINATE: f64 = 1e18;
 
 /// Loads a scene file (`.toml`), or any OBJ (`.obj`), which then gets a camera and, if next to nothing in it
-/// emits, a light.
+/// emits, a sky and a ground.
 ///
 /// # Errors
 /// [`Error::Usage`] for another ending; otherwise if a file cannot be read or is wrong, with file and line.
 pub fn load(path: &Path) -> Result<Scene> {
+    load_with(path, &Choices::default())
+}
+
+/// [`load`], with choices in place of what a file says or of what a bare OBJ would get.
+///
+/// # Errors
+/// As for [`load`]; also [`Error::Usage`] for a scene file with a choice that is for bare models only, and where the image of a chosen sky
+/// cannot be read.
+pub fn load_with(path: &Path, choices: &Choices) -> Result<Scene> {
     let ending = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
     let mut scene = match ending.as_str() {
-        "toml" => toml::load(path).map_err(with_what_is_there(path))?,
-        "obj" => bare_mesh::load(path).map_err(with_what_is_there(path))?,
+        "toml" => {
+            choices.check_for_scene_file(path)?;
+            toml::load(path, choices).map_err(with_what_is_there(path))?
+        }
+        "obj" => bare_mesh::load(path, choices).map_err(with_what_is_there(path))?.scene,
         _ => {
             // Who names a picture first has swapped two words, and is told so.
             let foreign = if is_picture(&ending) { None } else { other_formats::named(path) };
@@ -53,14 +73,20 @@ pub fn load(path: &Path) -> Result<Scene> {
             )));
         }
     };
+    finish(&mut scene)?;
+    Ok(scene)
+}
+
+/// What is done with every scene, wherever it comes from.
+fn finish(scene: &mut Scene) -> Result<()> {
     let merged = scene.merge_overlapping_lamps();
     scene.warnings.extend(merged);
     let parted = scene.part_touching_glass();
     scene.warnings.extend(parted);
     // What was there twice may be gone by now.
-    scene.warnings.extend(bodies::warnings(&scene));
+    scene.warnings.extend(bodies::warnings(scene));
     alike::shorten(&mut scene.warnings);
-    for warning in &mut scene.warnings {
+    for warning in scene.warnings.iter_mut().chain(&mut scene.notes) {
         // Names come from files, and a terminal would obey.
         if warning.contains(char::is_control) {
             *warning = warning.replace(char::is_control, "\u{fffd}");
@@ -70,9 +96,9 @@ pub fn load(path: &Path) -> Result<Scene> {
     let largest = (low + scene.origin).abs().max((high + scene.origin).abs()).max_element();
     if largest > LARGEST_COORDINATE {
         let message = format!("a coordinate of {largest:e} is too large; scale the scene to stay within 1e18");
-        return Err(Error::scene(path, message));
+        return Err(Error::scene(&scene.path, message));
     }
-    Ok(scene)
+    Ok(())
 }
 
 /// Names what is there in the place of a scene that is missing.

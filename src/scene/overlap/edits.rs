@@ -165,7 +165,11 @@ impl Plan {
                 }
             }
         }
-        scene.objects.retain(|object| !scene.meshes[object.mesh as usize].triangles.is_empty());
+        let stays = |object: &Object| !scene.meshes[object.mesh as usize].triangles.is_empty();
+        // The ground keeps its triangles, but may have another number.
+        let before = |ground: u32| scene.objects[..ground as usize].iter().filter(|object| stays(object)).count();
+        scene.ground = scene.ground.map(|ground| before(ground) as u32);
+        scene.objects.retain(stays);
         let mut number = vec![None; scene.meshes.len()];
         let mut kept = Vec::new();
         for object in &mut scene.objects {

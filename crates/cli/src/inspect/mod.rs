@@ -8,6 +8,7 @@ use crate::shared::counts::pixels;
 use crate::shared::film_size::FilmSize;
 use crate::shared::foreseen::{Foreseen, foresee};
 use crate::shared::printing::print;
+use crate::shared::scene_options::SceneOptions;
 use crate::shared::table::table;
 use luminaire::film::Demand;
 use luminaire::glam::DVec3;
@@ -27,7 +28,7 @@ Examples:
   luminaire inspect scenes/textures/textures.toml
       objects, materials, textures and luminaires, what the kernel will model, the memory that this takes, and every warning
   luminaire inspect model.obj --width 3840
-      the camera and the light that were found for it, too, and what a picture of this size takes of memory and disk
+      what was chosen for it (camera, sky, ground), too, and what a picture of this size takes of memory and disk
 
 Exit codes:
   0  the scene can be loaded, with or without warnings
@@ -46,11 +47,13 @@ pub struct Options {
     /// Height in pixels [default: the scene's, or from --width at the scene's aspect ratio].
     #[arg(long, value_name = "PIXELS", allow_negative_numbers = true, value_parser = pixels::<1, LARGEST_SIDE>)]
     height: Option<u32>,
+    #[command(flatten)]
+    of_scene: SceneOptions,
 }
 
 /// Loads a scene and prints what is in it.
 pub fn run(options: &Options) -> Result<ExitCode> {
-    let mut scene = scene::load(&options.scene)?;
+    let mut scene = options.of_scene.load(&options.scene)?;
     let own_film = scene.film;
     FilmSize { width: options.width, height: options.height, largest: LARGEST_SIDE }.apply(&mut scene.film);
     let FilmSettings { width, height, .. } = scene.film;
@@ -120,6 +123,10 @@ fn describe(scene: &Scene, foreseen: &Foreseen) -> String {
         text += &format!("\ntextures\n{}", table(2, &textures(scene)));
     }
     text += &format!("\nluminaires\n{}", table(2, &luminaires(scene)));
+    if !scene.notes.is_empty() {
+        text += "\nchosen\n";
+    }
+    scene.notes.iter().for_each(|note| text += &format!("  {note}\n"));
     text += "\nwarnings\n";
     if scene.warnings.is_empty() {
         text += "  none\n";
@@ -298,6 +305,8 @@ mod tests {
             integrator: Integrator::Path(estimator),
             settings: RenderSettings::default(),
             warnings: vec!["one.obj:3: something odd".into()],
+            notes: vec!["bare model: something chosen".into()],
+            ground: None,
             files: vec![],
         };
         let foreseen = Foreseen { lacks_light: false, development: 1.5.into(), found: None };
@@ -317,6 +326,7 @@ mod tests {
             "(1 2 3)",
             "point",
             "22 emissive triangles  total area 22.0000",
+            "  bare model: something chosen",
             "  one.obj:3: something odd",
         ] {
             assert!(text.contains(part), "{part} is not in\n{text}");

@@ -36,7 +36,7 @@ use crate::shared::values::Pixel;
 use luminaire::backend::{self, Renderer, Request};
 use luminaire::film::Aovs;
 use luminaire::render::{End, Limits, Rendered, Tracer, aovs, resume};
-use luminaire::scene::{self, Exposure, FilmSettings, Scene};
+use luminaire::scene::{Exposure, FilmSettings, Scene};
 use luminaire::{Error, Result};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -69,12 +69,13 @@ pub fn run(options: &Options) -> Result<ExitCode> {
 
     let mut seconds = Seconds::default();
     let start = Instant::now();
-    let mut scene = scene::load(&options.scene)?;
+    let mut scene = options.of_scene.load(&options.scene)?;
     seconds.load = start.elapsed().as_secs_f64();
     outputs.check(scene.files.iter().map(|path| ("a file of the scene", &**path)))?;
     let own_film = scene.film;
     change(&mut scene, options)?;
     let foreseen = foresee(&mut scene, &own_film);
+    scene.notes.iter().for_each(|note| notes.note(note));
     scene.warnings.iter().for_each(|warning| notes.warn(warning));
     foreseen.found.iter().for_each(|found| notes.note(found));
 

@@ -4,6 +4,7 @@ use crate::shared::backend_name::BackendName;
 use crate::shared::counts::{pixels, samples, seed};
 use crate::shared::estimator::EstimatorOptions;
 use crate::shared::exit_codes::EXIT_CODES;
+use crate::shared::scene_options::SceneOptions;
 use crate::shared::tone_name::{ToneName, exposure};
 use crate::shared::values::{Pixel, frames, noise, pixel, range, seconds, turntable};
 use luminaire::scene::Exposure;
@@ -18,6 +19,8 @@ Examples:
       two files of one render; the height follows from the scene's aspect ratio
   luminaire render model.obj --exposure auto --tone agx
       as bright as its surfaces want it, and with soft highlights, as film has them
+  luminaire render model.obj --sky sunset.hdr --up z --ground off
+      a bare model in a light of one's own, turned from z up, on nothing; `luminaire scene` writes all that it gets
   luminaire render model.obj --time 30 --backend compute-bvh --stats run.json
       as many samples as 30 seconds allow, and the figures of the run
   luminaire render model.obj --noise 0.02 --time 600 --error-map noise.png
@@ -42,7 +45,7 @@ const REPLAY_CONFLICTS: [&str; 8] =
 #[derive(Debug, clap::Args)]
 #[command(after_help = format!("{EXAMPLES}{EXIT_CODES}"))]
 pub struct Options {
-    /// A scene file (.toml) or any OBJ file.
+    /// A scene file (.toml) or any OBJ file, which then gets a camera, and a sky and a ground if nothing in it emits.
     pub scene: PathBuf,
 
     /// A file to write; .png, .exr or .hdr says the format. May be given several times [default: <SCENE>.png here].
@@ -98,6 +101,8 @@ pub struct Options {
     pub seed: Option<u32>,
     #[command(flatten)]
     pub estimator: EstimatorOptions,
+    #[command(flatten)]
+    pub of_scene: SceneOptions,
 
     /// Save the render there while it runs, when it ends, and on Ctrl-C or SIGTERM: an EXR file of the picture so far, and of all that
     /// --resume needs.

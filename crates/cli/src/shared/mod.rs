@@ -11,6 +11,7 @@ pub mod interrupts;
 pub mod outputs;
 pub mod printing;
 pub mod relative_path;
+pub mod scene_options;
 pub mod table;
 pub mod tone_name;
 pub mod units;

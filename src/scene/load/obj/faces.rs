@@ -6,7 +6,10 @@ use glam::{DVec3, Vec3};
 use std::collections::{BTreeMap, HashMap};
 
 /// More faces than this at one point get no normal there by angle: each is compared with each.
-const MOST_FACES_AT_A_POINT: usize = 16_384;
+const MOST_FACES_AT_A_POINT: usize = 4096;
+
+/// Unit normals that differ by less, single precision's rounding of the corners, are those of one plane.
+const SAME_PLANE: f64 = 1e-5;
 
 /// Faces with at least 3 corners.
 #[derive(Debug, Default)]
@@ -101,11 +104,12 @@ impl Faces {
     }
 
     /// A normal for each corner: the mean over the faces at that point whose normals differ from this face's by less than so many
-    /// degrees; zero for none. Empty for 0 degrees.
-    pub(super) fn normals_by_angle(&self, positions: &Positions, degrees: f32) -> Vec<Vec3> {
+    /// degrees; zero for none. Empty for 0 degrees. Also whether any two faces that lie in different planes share a normal.
+    pub(super) fn normals_by_angle(&self, positions: &Positions, degrees: f32) -> (Vec<Vec3>, bool) {
         if degrees <= 0.0 {
-            return Vec::new();
+            return (Vec::new(), false);
         }
+        let mut bent = false;
         let least_cosine = f64::from(degrees).to_radians().cos();
         let mut normals = vec![Vec3::ZERO; self.corners.len()];
         let points = self.points(positions);
@@ -115,10 +119,12 @@ impl Faces {
                 let near =
                     |other: &&Incident| other.corner == this.corner || normal(other).dot(normal(this)) > least_cosine;
                 let sum: DVec3 = incidents.iter().filter(near).map(|other| other.angle * normal(other)).sum();
-                normals[this.corner as usize] = sum.normalize_or_zero().as_vec3();
+                let mean = sum.normalize_or_zero();
+                bent |= mean.distance_squared(normal(this)) > SAME_PLANE * SAME_PLANE;
+                normals[this.corner as usize] = mean.as_vec3();
             }
         }
-        normals
+        (normals, bent)
     }
 
     /// Calls `triangle` with the material and the corners of each triangle, face after face, and `fault` with what is wrong with

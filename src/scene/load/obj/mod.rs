@@ -29,6 +29,8 @@ pub(super) struct Obj {
     pub libraries: Vec<(String, usize)>,
     /// Materials, numbered like [`Triangle::material`], of faces that lack a texture coordinate, with the line of the first.
     pub without_uv: Vec<(usize, usize)>,
+    /// By [`Reading::smooth`] faces share normals that would not share them otherwise.
+    pub smoothed: bool,
     /// What was skipped or dropped.
     pub warnings: Vec<String>,
 }
@@ -38,6 +40,8 @@ pub(super) struct Obj {
 pub(super) struct Reading {
     /// Bits of an angle in degrees: vertex normals are made where the file has none; faces share them that differ by less.
     pub smooth: Option<u32>,
+    /// `smooth` counts only where the file says nothing of smoothness: it has neither normals (`vn`) nor groups (`s`, `s off` included).
+    pub smooth_if_unsaid: bool,
     /// The colours of its vertices are left out.
     pub without_colours: bool,
 }
@@ -52,13 +56,18 @@ pub(super) fn read(path: &Path, how: Reading) -> Result<Obj> {
     let mut text = statements::read(path, &read_text(path, &mut warnings)?)?;
     let smooth = how.smooth.map(f32::from_bits);
     let has_normals = text.faces.corners.iter().any(|[_, _, normal]| *normal > 0);
+    let smooth = smooth.filter(|_| !how.smooth_if_unsaid || !has_normals && !text.says_smoothing);
     if smooth.is_some() && has_normals {
         let path = path.display();
         warnings.push(format!("{path}: `smooth` is ignored: the file has vertex normals of its own (vn)"));
     }
-    let made = match smooth {
-        Some(degrees) if !has_normals => text.faces.normals_by_angle(&text.positions, degrees),
-        _ => text.faces.normals_by_group(&text.positions),
+    let (made, smoothed) = match smooth {
+        Some(degrees) if !has_normals => {
+            let (made, smoothed) = text.faces.normals_by_angle(&text.positions, degrees);
+            // Normals that nobody asked for and that change nothing cost memory and time.
+            if smoothed || !how.smooth_if_unsaid { (made, smoothed) } else { (Vec::new(), false) }
+        }
+        _ => (text.faces.normals_by_group(&text.positions), false),
     };
     fill_gaps(&mut text, &made);
     drop(made);
@@ -85,7 +94,7 @@ pub(super) fn read(path: &Path, how: Reading) -> Result<Obj> {
     }
     lost.warn(path, &mesh, &mut warnings);
     let ObjText { materials, libraries, without_uv, .. } = text;
-    Ok(Obj { mesh, place, materials, libraries, without_uv, warnings })
+    Ok(Obj { mesh, place, materials, libraries, without_uv, smoothed, warnings })
 }
 
 /// Triangles that are not what the file says.

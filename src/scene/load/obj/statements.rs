@@ -33,6 +33,8 @@ pub(super) struct ObjText {
     pub materials: Vec<(String, usize)>,
     /// What follows `mtllib`, with its line.
     pub libraries: Vec<(String, usize)>,
+    /// There is an `s` line.
+    pub says_smoothing: bool,
     /// What is worth a warning.
     pub faults: Faults,
     /// What else the file has.
@@ -245,6 +247,7 @@ impl Scan<'_> {
     }
 
     fn smoothing(&mut self, line: usize, rest: &str) {
+        self.out.says_smoothing = true;
         let word = rest.split_ascii_whitespace().next().unwrap_or("off");
         self.smoothing_group = match word.to_ascii_lowercase().as_str() {
             "off" => 0,

@@ -2,8 +2,8 @@
 
 use super::foreign_words::{KEYS, NAMES};
 use super::tables::{
-    EnvironmentTable, FilmTable, IntegratorTable, LuminaireEntry, MaterialTable, ObjectTable, RenderTable, SceneFile,
-    SensorTable,
+    EnvironmentTable, FilmTable, GroundTable, IntegratorTable, LuminaireEntry, MaterialTable, ObjectTable, RenderTable,
+    SceneFile, SensorTable,
 };
 use crate::picture::linear;
 use crate::scene::load::near_name::near_name;
@@ -13,12 +13,13 @@ use serde::de::DeserializeOwned;
 use std::ops::Range;
 
 /// The tables, of which a file has one each or a list: name, whether it is a list, keys.
-fn tables() -> [(&'static str, bool, Vec<String>); 9] {
+fn tables() -> [(&'static str, bool, Vec<String>); 10] {
     [
         ("top", false, keys::<SceneFile>()),
         ("film", false, keys::<FilmTable>()),
         ("sensor", false, keys::<SensorTable>()),
         ("environment", false, keys::<EnvironmentTable>()),
+        ("ground", false, keys::<GroundTable>()),
         ("integrator", false, keys::<IntegratorTable>()),
         ("render", false, keys::<RenderTable>()),
         ("object", true, keys::<ObjectTable>()),

@@ -111,6 +111,7 @@ impl File<'_> {
         }
         let how = obj::Reading {
             smooth: object.smooth.map(|smooth| smooth.0.to_bits()),
+            smooth_if_unsaid: false,
             without_colours: object.vertex_colours == Some(false),
         };
         let mesh = loader.mesh(&mesh_path, how).map_err(|error| match error {

@@ -30,6 +30,7 @@ pub(super) const KEYS: &[Words] = &[
         ],
         "what is seen is an [[object]] with `mesh = \"FILE.obj\"`",
     ),
+    ("top", &["floor", "ground_plane", "shadow_catcher"], "a level sheet under the scene is the table [ground]"),
     (
         "top",
         &["sphere", "cube", "plane", "quad", "disk", "cylinder", "rectangle", "triangle"],
@@ -44,7 +45,7 @@ pub(super) const KEYS: &[Words] = &[
     (
         "top",
         &["background", "world", "sky", "envmap", "environment_map", "hdri", "skybox", "ambient_light"],
-        "light from all around is the table [environment]",
+        "light from all around is the table [environment]; `sky = \"studio\"` there is a built-in one",
     ),
     (
         "top",
@@ -209,6 +210,24 @@ pub(super) const KEYS: &[Words] = &[
     ),
     ("environment", &["map", "texture", "hdri", "path", "filename", "file", "envmap"], "the image is named by `image`"),
     ("environment", &["rotation", "angle", "to_world"], "degrees about +y are `rotate`"),
+    (
+        "environment",
+        &["preset", "studio", "sun", "sunsky", "sun_sky", "sunlight", "day", "turbidity", "gradient"],
+        "the built-in sky is `sky = \"studio\"`; others are an `image`",
+    ),
+    // [ground]
+    (
+        "ground",
+        &["albedo", "color", "colour", "kd", "reflectance", "grey", "gray"],
+        "the diffuse albedo is `diffuse`, three numbers from 0 to 1",
+    ),
+    ("ground", &["y", "z", "level", "position", "altitude", "elevation", "offset"], "its y is `height`"),
+    ("ground", &["width", "scale", "extent", "radius", "edge", "length"], "the length of an edge is `size`"),
+    (
+        "ground",
+        &["material", "bsdf", "texture", "diffuse_map", "glossy", "reflection"],
+        "the ground is diffuse; one of another material is an [[object]] with a mesh of its own",
+    ),
     // [[object]]
     ("object", &["obj", "model", "shape", "path", "geometry", "filename", "file"], "the OBJ file is named by `mesh`"),
     ("object", &["position", "location", "origin", "translation", "offset"], "where it stands is `translate`"),

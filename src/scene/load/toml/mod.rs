@@ -9,6 +9,9 @@ mod settings;
 mod tables;
 mod values;
 
+use super::choices::Choices;
+use super::environment;
+use super::ground::{self, Ground};
 use super::loader::Loader;
 use super::text_file::read_bytes;
 use crate::scene::{FirstView, Projection, RenderSettings, Scene, Sensor};
@@ -17,10 +20,10 @@ use advice::{in_plain_words, wrong_brackets};
 use file::File;
 use glam::{DVec3, Vec3};
 use std::path::Path;
-use tables::SceneFile;
+use tables::{GroundTable, SceneFile};
 
 /// Loads a scene file.
-pub(super) fn load(path: &Path) -> Result<Scene> {
+pub(super) fn load(path: &Path, choices: &Choices) -> Result<Scene> {
     let bytes = read_bytes(path)?;
     let text = std::str::from_utf8(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes)).map_err(|error| {
         let line = 1 + bytes[..error.valid_up_to()].iter().filter(|byte| **byte == b'\n').count();
@@ -34,11 +37,20 @@ pub(super) fn load(path: &Path) -> Result<Scene> {
         let span = error.span().unwrap_or(0..0);
         file.error(span.clone(), in_plain_words(error.message().trim(), text, span))
     })?;
-    file.build(scene)
+    file.build(scene, choices)
 }
 
 impl File<'_> {
-    fn build(&self, file: SceneFile) -> Result<Scene> {
+    fn build(&self, mut file: SceneFile, choices: &Choices) -> Result<Scene> {
+        let Choices { sky, ground, smooth: _, up: _ } = choices;
+        if sky.is_some() {
+            file.environment = None;
+        }
+        let ground = match (ground, file.ground) {
+            (None | Some(true), Some(table)) => Some(table),
+            (None | Some(false), _) => None,
+            (Some(true), None) => Some(GroundTable::default()),
+        };
         let film = self.film(file.film)?;
         let integrator = self.integrator(&file.integrator)?;
         // What is wrong in this file is said before any other file is read; where the origin is, only those know.
@@ -60,9 +72,10 @@ impl File<'_> {
         if let Some(warning) = fov.and_then(radians::field_of_view) {
             loader.warnings.push(self.warning(&warning));
         }
-        let environment = match &file.environment {
-            None => None,
-            Some(table) => self.environment(table, &mut loader.warnings)?,
+        let environment = match (sky, &file.environment) {
+            (Some(sky), _) => environment::of(sky, &mut loader.files, &mut loader.warnings)?,
+            (None, Some(table)) => self.environment(table, &mut loader.warnings)?,
+            (None, None) => None,
         };
         let (mut objects, mut to_world) = (Vec::new(), Vec::new());
         for table in &file.object {
@@ -107,12 +120,23 @@ impl File<'_> {
             settings,
             files: loader.files,
             warnings: loader.warnings,
+            notes: Vec::new(),
+            ground: None,
         };
         scene.sensor = sensor.unwrap_or_else(|| {
             let FirstView { sensor, place } = scene.first_view(Vec3::Y);
             scene.warnings.push(self.warning(&format!("no [sensor]; the camera stands {place}")));
             sensor
         });
+        // The camera frames what stands on the ground.
+        if let Some(GroundTable { height, diffuse, size }) = ground {
+            let ground = Ground {
+                height: height.map(|height| height.0),
+                albedo: diffuse.map(|albedo| albedo.0),
+                size: size.map(|size| size.0.into()),
+            };
+            ground::add(&mut scene, &ground);
+        }
         scene.warnings.extend(scene.dark_because());
         Ok(scene)
     }

@@ -2,11 +2,15 @@
 
 use super::advice::name_hint;
 use super::file::File;
-use super::tables::{EnvironmentTable, FilmTable, IntegratorKind, IntegratorTable, SensorKind, SensorTable};
+use super::tables::{
+    BuiltInSky, EnvironmentTable, FilmTable, IntegratorKind, IntegratorTable, SensorKind, SensorTable,
+};
 use super::values::Triple;
 use crate::scene::load::near_name::instead_of;
 use crate::scene::load::{bare_mesh, environment};
-use crate::scene::{Environment, Estimator, EstimatorChanges, FilmSettings, Integrator, Lens, Projection, Sensor};
+use crate::scene::{
+    Environment, EnvironmentImage, Estimator, EstimatorChanges, FilmSettings, Integrator, Lens, Projection, Sensor,
+};
 use crate::{Error, Result};
 use ::toml::Spanned;
 use glam::{DVec3, Vec3};
@@ -110,24 +114,31 @@ impl File<'_> {
         table: &Spanned<EnvironmentTable>,
         warnings: &mut Vec<String>,
     ) -> Result<Option<Environment>> {
-        let EnvironmentTable { radiance, image, rotate } = table.get_ref();
-        let radiance = match (radiance, image) {
-            (Some(radiance), _) => radiance.0,
-            (None, Some(_)) => Vec3::ONE,
-            (None, None) => {
-                let message = "an environment needs a `radiance`, an `image`, or both";
+        let EnvironmentTable { radiance, image, sky, rotate } = table.get_ref();
+        if let (Some(sky), Some(_)) = (sky, image) {
+            return Err(self.error(sky.span(), "give either `sky`, a built-in one, or `image`"));
+        }
+        let radiance = match radiance {
+            Some(radiance) => radiance.0,
+            None if image.is_some() || sky.is_some() => Vec3::ONE,
+            None => {
+                let message = "an environment needs a `radiance`, an `image` or a `sky`";
                 return Err(self.error(table.span(), message));
             }
         };
-        if let (Some(rotate), None) = (rotate, image) {
-            return Err(self.error(rotate.span(), "`rotate` turns the `image` of the environment, and there is none"));
+        if let (Some(rotate), None, None) = (rotate, image, sky) {
+            let message = "`rotate` turns the `image` or the `sky` of the environment, and there is none";
+            return Err(self.error(rotate.span(), message));
         }
         if radiance == Vec3::ZERO {
             warnings.push(self.warning("the environment's radiance is 0; there is none"));
             return Ok(None);
         }
+        let built_in = sky.as_ref().map(|sky| match sky.get_ref() {
+            BuiltInSky::Studio => EnvironmentImage::studio(),
+        });
         let image = match image {
-            None => None,
+            None => built_in,
             Some(name) if name.get_ref().trim().is_empty() => {
                 return Err(self.error(name.span(), "`image` names no file: name a picture, or leave it out"));
             }

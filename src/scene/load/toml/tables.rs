@@ -1,8 +1,8 @@
 //! The tables of a scene file, as `scenes/README.md` describes them.
 
 use super::values::{
-    Angle, Blades, Bounces, Colour, Eta, Exact, Exponent, Exposure, FilterRadius, Finite, Fov, MapOffset, MapScale,
-    Matrix, NotNegative, Pixels, Positive, Probability, Samples, Triple, Unit,
+    Albedo, Angle, Blades, Bounces, Colour, Eta, Exact, Exponent, Exposure, FilterRadius, Finite, Fov, MapOffset,
+    MapScale, Matrix, NotNegative, Pixels, Positive, Probability, Samples, Triple, Unit,
 };
 use crate::scene::{AreaSampling, Directions, Extinction, Filter, LightSampling, Sampler, Tone};
 use ::toml::Spanned;
@@ -14,6 +14,7 @@ pub(super) struct SceneFile {
     pub film: Option<Spanned<FilmTable>>,
     pub sensor: Option<Spanned<SensorTable>>,
     pub environment: Option<Spanned<EnvironmentTable>>,
+    pub ground: Option<GroundTable>,
     #[serde(default)]
     pub integrator: IntegratorTable,
     #[serde(default)]
@@ -65,7 +66,22 @@ pub(super) enum SensorKind {
 pub(super) struct EnvironmentTable {
     pub radiance: Option<Colour>,
     pub image: Option<Spanned<String>>,
+    pub sky: Option<Spanned<BuiltInSky>>,
     pub rotate: Option<Spanned<Finite>>,
+}
+
+#[derive(Deserialize, Clone, Copy)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum BuiltInSky {
+    Studio,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields)]
+pub(super) struct GroundTable {
+    pub height: Option<Exact>,
+    pub diffuse: Option<Albedo>,
+    pub size: Option<Positive>,
 }
 
 #[derive(Deserialize, Default)]

@@ -102,6 +102,11 @@ impl Triple {
 #[serde(try_from = "Numbers<3>")]
 pub(super) struct Colour(pub Vec3);
 
+/// Linear RGB from 0 to 1.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(try_from = "Numbers<3>")]
+pub(super) struct Albedo(pub Vec3);
+
 /// A field of view in degrees.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(try_from = "f64")]
@@ -219,6 +224,15 @@ impl TryFrom<Numbers<3>> for Colour {
             .filter(|c| c.is_finite() && c.min_element() >= 0.0)
             .map(Colour)
             .ok_or("expected linear RGB: three finite numbers, none of them negative")
+    }
+}
+
+impl TryFrom<Numbers<3>> for Albedo {
+    type Error = &'static str;
+    fn try_from(Numbers(numbers): Numbers<3>) -> Checked<Self> {
+        let albedo = DVec3::from(numbers).as_vec3();
+        let shares = albedo.to_array().iter().all(|share| (0.0..=1.0).contains(share));
+        shares.then_some(Albedo(albedo)).ok_or("expected linear RGB: three numbers from 0 to 1")
     }
 }
 

@@ -1,0 +1,114 @@
+//! Whether the lamps of a model light what its camera sees: from outside, a closed room with a lamp is black.
+
+use crate::scene::{Projection, Scene, widen};
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// The camera looks along so many rays each way.
+const RAYS: u32 = 16;
+/// From what it sees, so many points on lamps are looked for.
+const LAMP_POINTS: usize = 8;
+/// A lamp that reaches less than this share of what is seen does not light it.
+const LEAST_LIT: f64 = 0.2;
+/// Larger models are not looked at: each ray is held against each triangle.
+const MOST_TRIANGLES: u64 = 1 << 20;
+/// Rays begin and end off surfaces by this share of their length.
+const OFF: f64 = 1e-4;
+
+/// A triangle in world space.
+struct Face {
+    corners: [DVec3; 3],
+    emits: bool,
+}
+
+/// Whether enough of what the camera sees, lamps left out, has a lamp in sight; also where nothing else is seen, and where it is not found out.
+pub(super) fn reaches_what_is_seen(scene: &Scene) -> bool {
+    let Projection::Perspective { fov } = scene.sensor.projection else { return true };
+    if scene.triangle_count() > MOST_TRIANGLES {
+        return true;
+    }
+    let faces = faces(scene);
+    let lamps = lamp_points(&faces);
+    let eye = scene.sensor.position.as_dvec3();
+    let forward = (scene.sensor.target.as_dvec3() - eye).normalize_or_zero();
+    let right = forward.cross(scene.sensor.up.as_dvec3()).normalize_or_zero();
+    let up = right.cross(forward);
+    let half = (0.5 * f64::from(fov)).to_radians().tan();
+    let aspect = f64::from(scene.film.width) / f64::from(scene.film.height);
+    let seen = (0..RAYS * RAYS).into_par_iter().filter_map(|ray| {
+        let share = |i: u32| 2.0 * (f64::from(i) + 0.5) / f64::from(RAYS) - 1.0;
+        let direction = forward + half * (aspect * share(ray % RAYS) * right + share(ray / RAYS) * up);
+        let (face, distance) = nearest(&faces, eye, direction)?;
+        // Towards the eye, off the surface that was met.
+        let point = eye + distance * (1.0 - OFF) * direction;
+        (!face.emits).then(|| lamps.iter().any(|lamp| is_free(&faces, point, *lamp)))
+    });
+    let seen: Vec<bool> = seen.collect();
+    let lit = seen.iter().filter(|lit| **lit).count();
+    seen.is_empty() || lit as f64 >= LEAST_LIT * seen.len() as f64
+}
+
+/// What stops light, and what emits it.
+fn faces(scene: &Scene) -> Vec<Face> {
+    let mut faces = Vec::new();
+    for object in &scene.objects {
+        let to_world = widen(object.object_to_world);
+        let mesh = &scene.meshes[object.mesh as usize];
+        for triangle in &mesh.triangles {
+            let material = scene.material_of(object, triangle);
+            let emits = material.emission != glam::Vec3::ZERO;
+            if emits || material.opacity >= 0.5 && material.transmission == glam::Vec3::ZERO {
+                let corners =
+                    triangle.vertices.map(|v| to_world.transform_point3(mesh.positions[v as usize].as_dvec3()));
+                faces.push(Face { corners, emits });
+            }
+        }
+    }
+    faces
+}
+
+/// Points on lamps, evenly over their area.
+fn lamp_points(faces: &[Face]) -> Vec<DVec3> {
+    let area = |face: &Face| {
+        let [a, b, c] = face.corners;
+        0.5 * (b - a).cross(c - a).length()
+    };
+    let lamps: Vec<&Face> = faces.iter().filter(|face| face.emits).collect();
+    let whole: f64 = lamps.iter().map(|lamp| area(lamp)).sum();
+    let (mut points, mut passed) = (Vec::new(), 0.0);
+    for lamp in lamps {
+        passed += area(lamp);
+        while points.len() < LAMP_POINTS && (points.len() as f64 + 0.5) / LAMP_POINTS as f64 * whole <= passed {
+            let [a, b, c] = lamp.corners;
+            // Not all at one place of a lamp of few triangles.
+            let turn = (0.5 + points.len() as f64 * 0.618_033_988_749_895).fract();
+            let (u, v) = (0.8 * turn + 0.1, 0.8 * (1.0 - turn) * 0.5 + 0.05);
+            points.push(a + u * (b - a) + v * (c - a));
+        }
+    }
+    points
+}
+
+/// How many times `direction` it is from `origin` to a triangle (Möller and Trumbore 1997).
+fn distance(face: &Face, origin: DVec3, direction: DVec3) -> Option<f64> {
+    let [a, b, c] = face.corners;
+    let (ab, ac) = (b - a, c - a);
+    let p = direction.cross(ac);
+    let scale = 1.0 / ab.dot(p);
+    let from = origin - a;
+    let u = from.dot(p) * scale;
+    let q = from.cross(ab);
+    let v = direction.dot(q) * scale;
+    // A ray along the plane has no number here, and meets nothing.
+    (u >= 0.0 && v >= 0.0 && u + v <= 1.0).then(|| ac.dot(q) * scale).filter(|distance| *distance > 0.0)
+}
+
+fn nearest(faces: &[Face], origin: DVec3, direction: DVec3) -> Option<(&Face, f64)> {
+    let met = faces.iter().filter_map(|face| Some((face, distance(face, origin, direction)?)));
+    met.min_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// Whether nothing is between two points but at their ends.
+fn is_free(faces: &[Face], from: DVec3, to: DVec3) -> bool {
+    !faces.iter().any(|face| distance(face, from, to - from).is_some_and(|d| d < 1.0 - OFF))
+}

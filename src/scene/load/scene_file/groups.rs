@@ -1,0 +1,63 @@
+//! The objects and groups that an OBJ file names: luminaire has one object for all of them, but who changes materials may know them by these names.
+
+use super::words::quoted;
+use crate::Result;
+use crate::scene::load::text_file::{logical_lines, read_text};
+use std::path::Path;
+
+/// So many are listed.
+const MOST: usize = 40;
+
+/// Comments with the names, the number of faces of each, and the materials they use; empty where the file names none.
+pub(super) fn comments(path: &Path) -> Result<String> {
+    // What is odd in the file was said when it was loaded.
+    let text = read_text(path, &mut Vec::new())?;
+    let mut groups: Vec<Group> = Vec::new();
+    let mut material: Option<&str> = None;
+    let lines: Vec<_> = logical_lines(&text).collect();
+    for (_, line) in &lines {
+        let line = line.trim();
+        let keyword = line.split_ascii_whitespace().next().unwrap_or_default();
+        let rest = line[keyword.len()..].trim();
+        match keyword {
+            "o" | "g" => groups.push(Group { keyword, name: rest, faces: 0, materials: Vec::new() }),
+            "usemtl" => material = Some(rest),
+            "f" | "fo" => {
+                if let Some(group) = groups.last_mut() {
+                    group.faces += 1;
+                    if let Some(material) = material
+                        && !group.materials.contains(&material)
+                        && group.materials.len() < MOST
+                    {
+                        group.materials.push(material);
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+    groups.retain(|group| group.faces > 0);
+    if groups.is_empty() {
+        return Ok(String::new());
+    }
+    let mut said = String::from(
+        "# The file's objects (o) and groups (g), which are one mesh here, with their faces and materials:\n",
+    );
+    for Group { keyword, name, faces, materials } in groups.iter().take(MOST) {
+        let materials = materials.iter().map(|name| quoted(name)).collect::<Vec<_>>().join(", ");
+        let of = if materials.is_empty() { String::new() } else { format!(", {materials}") };
+        said += &format!("#   {keyword} {}: {faces}{of}\n", quoted(name));
+    }
+    if groups.len() > MOST {
+        said += &format!("#   and {} more\n", groups.len() - MOST);
+    }
+    Ok(said)
+}
+
+/// What follows an `o` or a `g`.
+struct Group<'a> {
+    keyword: &'a str,
+    name: &'a str,
+    faces: u64,
+    materials: Vec<&'a str>,
+}

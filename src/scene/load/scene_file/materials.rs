@@ -1,0 +1,137 @@
+//! The materials of a model as tables, in comments: uncommented, they change nothing.
+
+use super::words::{number, path, quoted, triple};
+use crate::Result;
+use crate::scene::load::material_draft::{Draft, MapDraft};
+use crate::scene::load::texture::{Channel, MapFile};
+use crate::scene::{Material, Scene};
+use glam::{Vec2, Vec3};
+use std::collections::HashMap;
+use std::path::Path;
+
+/// What the keys mean.
+const KEYS: &str = "\
+# Materials. Each is listed with what it is now; the MTL file goes on counting for what no table says. To change one, remove the `#` from
+# its `[[material]]`, its `name` and the keys that are meant.
+#   diffuse             diffuse albedo, RGB from 0 to 1
+#   glossy, exponent    albedo of a Blinn-Phong lobe at normal incidence, and its exponent, 0 to 1e8
+#   emission            emitted radiance, 0 or more: a lamp; `one_sided = true`: only its outward side emits
+#   reflection          albedo of a mirror; with `eta` it lies over the rest, as varnish does
+#   transmission, eta   albedo of what passes into glass, and its index of refraction, 0.01 to 100; `thin = true`: a pane, which bends nothing
+#   opacity             share of light that meets the surface at all, 0 (a hole) to 1
+#   ambient             albedo for the ambient term of the simple ray tracer
+#   impulse_probability above 0 and below 1: how often a path takes the mirror or glass; changes the noise, never the mean
+#   diffuse_map, glossy_map, emission_map, ambient_map, opacity_map
+#                       an image that multiplies the number: \"FILE\", or { image = \"FILE\", scale = [2, 2], offset = [0.5, 0] }; \"\" removes it
+";
+
+/// A commented table for each material that the model names or shows; `drafts` are what the first materials of the scene are made of. Files are named as
+/// seen from `folder`.
+pub(super) fn tables(scene: &Scene, drafts: &[Draft], folder: &Path) -> Result<String> {
+    let mut shown = vec![0u64; scene.materials.len()];
+    for (index, object) in (0..).zip(&scene.objects) {
+        if scene.ground != Some(index) {
+            for triangle in &scene.meshes[object.mesh as usize].triangles {
+                shown[object.material.unwrap_or(triangle.material) as usize] += 1;
+            }
+        }
+    }
+    // Of one name there is one table, which changes all materials of that name.
+    let mut by_name: HashMap<&str, usize> = HashMap::new();
+    let mut order = Vec::new();
+    for (index, draft) in drafts.iter().enumerate() {
+        // The built-in one, where nothing shows it.
+        if index == 0 && shown[0] == 0 {
+            continue;
+        }
+        let known = *by_name.entry(&draft.name).or_insert(order.len());
+        if known == order.len() {
+            order.push(index);
+        } else if shown[order[known]] == 0 {
+            order[known] = index;
+        }
+    }
+    let mut text = String::from(KEYS);
+    for index in order {
+        let said = match shown[index] {
+            0 => "no triangle".into(),
+            1 => "1 triangle".into(),
+            count => format!("{count} triangles"),
+        };
+        text += &format!("\n# [[material]]\n# name = {}  # {said}\n", quoted(&drafts[index].name));
+        text += &table(&scene.materials[index], &drafts[index], folder)?;
+    }
+    Ok(text)
+}
+
+/// The keys of one material that mean something for it.
+fn table(material: &Material, draft: &Draft, folder: &Path) -> Result<String> {
+    let m = material;
+    let mut text = String::new();
+    let mut key = |name: &str, value: String| text += &format!("# {name} = {value}\n");
+    key("diffuse", triple(m.lambert));
+    key("glossy", triple(m.glossy));
+    if m.glossy != Vec3::ZERO {
+        key("exponent", number(m.exponent));
+    }
+    key("emission", triple(m.emission));
+    if m.emission != Vec3::ZERO {
+        key("one_sided", m.one_sided.to_string());
+    }
+    let (mirror, glass) = (m.reflection != Vec3::ZERO, m.transmission != Vec3::ZERO);
+    if mirror || glass {
+        key("reflection", triple(m.reflection));
+    }
+    if glass {
+        key("transmission", triple(m.transmission));
+        key("thin", m.thin.to_string());
+    }
+    if let Some(eta) = m.eta.filter(|_| mirror || glass) {
+        key("eta", number(eta));
+    }
+    if let Some(probability) = m.impulse_probability {
+        key("impulse_probability", number(probability));
+    }
+    if (m.ambient, m.maps.ambient) != (m.lambert, m.maps.lambert) {
+        key("ambient", triple(m.ambient));
+    }
+    key("opacity", number(m.opacity));
+    // What has no albedo of its own here has the diffuse one, with its map.
+    let ambient_map = match (&draft.maps.ambient, draft.ambient, m.maps.ambient) {
+        (MapDraft::Unstated, None, Some(_)) if m.ambient != m.lambert => &draft.maps.diffuse,
+        (own, ..) => own,
+    };
+    let maps = [
+        ("diffuse_map", &draft.maps.diffuse),
+        ("glossy_map", &draft.maps.glossy),
+        ("emission_map", &draft.maps.emission),
+        ("ambient_map", ambient_map),
+        ("opacity_map", &draft.maps.opacity),
+    ];
+    for (name, map) in maps {
+        if let MapDraft::File(map) = map {
+            text += &map_line(name, map, folder)?;
+        }
+    }
+    Ok(text)
+}
+
+/// The line of a map. What a scene file cannot say of it is no key.
+fn map_line(name: &str, map: &MapFile, folder: &Path) -> Result<String> {
+    let Some(file) = map.path() else {
+        let named = map.names.first().map_or("", String::as_str);
+        return Ok(format!("#   {name}: {}, which is not there\n", quoted(named)));
+    };
+    let file = quoted(&path(&file, folder)?);
+    let plain = !map.clamp && map.base == 0.0 && map.gain == 1.0 && map.channel == Channel::Any;
+    if !plain {
+        return Ok(format!("#   {name}: {file}, with options of the MTL file that a scene file has no keys for\n"));
+    }
+    let pair = |v: Vec2| format!("[{}, {}]", number(v.x), number(v.y));
+    Ok(match (map.scale, map.offset) {
+        (Vec2::ONE, Vec2::ZERO) => format!("# {name} = {file}\n"),
+        (scale, offset) => {
+            format!("# {name} = {{ image = {file}, scale = {}, offset = {} }}\n", pair(scale), pair(offset))
+        }
+    })
+}
