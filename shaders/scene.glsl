@@ -42,8 +42,9 @@ const uint EXTINCTION_THROUGHPUT = 3u;
 const int FILTER_TEXELS = 65;
 
 layout(set = 0, binding = 0, std140) uniform Frame {
-    vec4 position;                        // eye point, or a point `start` in front of it
-    vec4 forward;                         // unit line of sight
+    vec4 position;                        // eye point, or a point `start` in front of it; or where the middle one of the parallel rays begins
+    vec4 forward;                         // to the middle of the picture, 1 along the line of sight; or the direction of the parallel rays
+    vec4 axis;                            // unit line of sight: `forward` but for a shift
     vec4 right;                           // to the right edge of the picture: at distance 1, or of the parallel rays
     vec4 up;                              // to the upper edge
     float lens_radius;                    // of the aperture; 0: a pinhole

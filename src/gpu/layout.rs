@@ -67,10 +67,12 @@ macro_rules! shared {
 shared! {
     /// Sensor and estimator: constant during a render (binding 0).
     Frame {
-        /// Eye point, or a point `start` in front of it.
+        /// Eye point, or a point `start` in front of it; of parallel rays, where the one in the middle of the picture begins.
         position: [f32; 4],
-        /// Unit line of sight.
+        /// To the middle of the picture, 1 along the line of sight; of parallel rays, their direction.
         forward: [f32; 4],
+        /// Unit line of sight: `forward` but for a shift.
+        axis: [f32; 4],
         /// To the right edge of the picture: at distance 1, or of the parallel rays.
         right: [f32; 4],
         /// To the upper edge.

@@ -47,6 +47,8 @@ impl Provenance {
             luminaires,
             environment,
             sensor,
+            // Only the one that is rendered counts.
+            cameras: _,
             film,
             integrator,
             settings,

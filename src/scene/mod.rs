@@ -29,13 +29,13 @@ pub use estimator::{
     AreaSampling, Directions, Estimator, EstimatorChanges, Extinction, Integrator, LightSampling, PRESETS,
 };
 pub use filter::Filter;
-pub use load::load;
+pub use load::{load, use_camera};
 pub use luminaire::Luminaire;
 pub use luminaire_table::{EmissiveTriangle, LuminaireTable, SampledLuminaire};
 pub use material::{Maps, Material};
 pub use mesh::{Mesh, Object, Triangle};
 pub(crate) use mesh::{moved_box, outward, widen};
-pub use sensor::{Lens, Projection, Sensor};
+pub use sensor::{Camera, Lens, Projection, Sensor};
 pub use settings::{FilmSettings, RenderSettings};
 pub use texture::Texture;
 pub use world::Scene;

@@ -27,8 +27,8 @@ const OPTIONS: &[(&[&str], &str)] = &[
     (&["out", "file", "outfile", "output-file", "save", "image"], "the picture is named with -o FILE.png"),
     (&["output-dir", "outdir", "folder", "dir"], "-o FOLDER/FILE.png names the folder, too"),
     (
-        &["camera", "fov", "lookat", "look-at", "eye", "position", "target", "view"],
-        "the camera is the table [sensor] of the scene file; `luminaire view` writes it with the key C",
+        &["camera", "cam", "sensor", "fov", "lookat", "look-at", "eye", "position", "target", "view", "viewpoint", "shift"],
+        "the camera is the table [sensor] of the scene file, or --camera FILE.toml, which `luminaire view` writes with the key C; --camera NAME takes one of several",
     ),
     (
         &["env", "environment", "envmap", "background", "hdri", "sky", "light", "lights"],

@@ -1,11 +1,12 @@
 //! `luminaire view`.
 
 use crate::shared::backend_name::{self, BackendName};
+use crate::shared::camera::CameraOption;
 use crate::shared::counts::{pixels, samples, seed};
 use crate::shared::estimator::EstimatorOptions;
 use crate::shared::film_size::FilmSize;
 use crate::shared::foreseen::warn_of_the_picture;
-use crate::shared::printing::warn;
+use crate::shared::printing::{Notes, warn};
 use crate::shared::values::stops;
 use luminaire::Result;
 use luminaire::film::Film;
@@ -21,6 +22,8 @@ Examples:
       another size, and our own BVH to begin with
   luminaire view scenes/cornell/cornell.toml --spp 256
       the picture stops at 256 samples a pixel; C prints the camera, and writes it to cornell-camera-1.toml
+  luminaire view scenes/cornell/cornell.toml --camera cornell-camera-1.toml
+      begins with the camera, and the exposure, that C wrote; `luminaire render` takes it, too
 
 Files go to the current folder: <SCENE>-view-1.png, -2, ...; none is ever replaced.";
 
@@ -39,6 +42,9 @@ const LARGEST_SIDE: u32 = 16384;
 pub struct Options {
     /// A scene file (.toml) or any OBJ file.
     scene: PathBuf,
+
+    #[command(flatten)]
+    camera: CameraOption,
 
     /// Width of the window in pixels [default: the scene's, or from --height at the scene's aspect ratio].
     #[arg(long, value_name = "PIXELS", allow_negative_numbers = true, value_parser = pixels::<16, LARGEST_SIDE>, help_heading = "Window")]
@@ -78,6 +84,7 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     let request = backend_name::request(options.backend, options.device.as_deref())?;
     options.estimator.check()?;
     let mut scene = scene::load(&options.scene)?;
+    options.camera.choose(&mut scene, Notes { quiet: false })?;
     FilmSize { width: options.width, height: options.height, largest: LARGEST_SIDE }.apply(&mut scene.film);
     Film::check_size(scene.film.width, scene.film.height)?;
     options.estimator.apply(&mut scene)?;

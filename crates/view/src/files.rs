@@ -12,9 +12,9 @@ use luminaire::scene::Sensor;
 use luminaire::{Result, picture};
 use std::path::{Path, PathBuf};
 
-/// Writes a camera of a scene with this origin to a file whose name begins with `stem`. The news are its text, and the file's name or why it was not written.
-pub fn save_camera(stem: &str, sensor: &Sensor, origin: DVec3) -> [News; 2] {
-    let text = to_toml(sensor, origin);
+/// Writes a camera of a scene with this origin, and the exposure in stops, to a file whose name begins with `stem`. The news are its text, and the file's name or why it was not written.
+pub fn save_camera(stem: &str, sensor: &Sensor, origin: DVec3, exposure: f32) -> [News; 2] {
+    let text = to_toml(sensor, origin, exposure);
     let saved = save_numbered(names(Path::new(""), stem, "camera", "toml"), |path| save_text(path, &text));
     [News::Done(text), written(saved)]
 }

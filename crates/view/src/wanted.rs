@@ -27,7 +27,7 @@ pub enum Order {
     NextEstimator,
     /// Save a picture.
     Save(Saved),
-    /// Write the camera to a file, as a scene file's `[sensor]` table.
+    /// Write the camera and the exposure to a file, as a scene file's `[sensor]` and `[render]`.
     SaveCamera,
     /// End the thread.
     Quit,

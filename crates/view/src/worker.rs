@@ -133,7 +133,7 @@ impl Worker {
                     Order::NextBackend => self.next_backend(&wanted),
                     Order::NextEstimator => self.next_estimator()?,
                     Order::SaveCamera => {
-                        let news = save_camera(&self.stem, &wanted.sight.sensor, self.scene.origin);
+                        let news = save_camera(&self.stem, &wanted.sight.sensor, self.scene.origin, wanted.exposure);
                         news.into_iter().for_each(&self.send);
                     }
                     Order::Save(saved) => saves.push(saved),

@@ -6,7 +6,7 @@ use crate::Result;
 use crate::scene::{
     Estimator, FilmSettings, Filter, Integrator, Luminaire, Object, Projection, RenderSettings, Scene, Sensor, widen,
 };
-use glam::{Affine3A, DAffine3, DVec3, Vec3};
+use glam::{Affine3A, DAffine3, DVec3, Vec2, Vec3};
 use std::path::Path;
 
 /// Vertical field of view of the framing camera, in degrees.
@@ -49,7 +49,9 @@ pub(super) fn load(path: &Path) -> Result<Scene> {
             up: Vec3::Y,
             projection: Projection::Perspective { fov: FOV },
             lens: None,
+            shift: Vec2::ZERO,
         },
+        cameras: Vec::new(),
         film: FILM,
         integrator: Integrator::Path(Estimator::default()),
         settings: RenderSettings::default(),
@@ -125,5 +127,6 @@ pub(super) fn framing_sensor(scene: &Scene) -> Sensor {
         up: Vec3::Y,
         projection: Projection::Perspective { fov: FOV },
         lens: None,
+        shift: Vec2::ZERO,
     }
 }

@@ -3,6 +3,7 @@
 mod alike;
 mod bare_mesh;
 mod bodies;
+mod camera;
 mod environment;
 mod far;
 mod loader;
@@ -17,6 +18,8 @@ mod texel_faults;
 mod text_file;
 mod texture;
 mod toml;
+
+pub use camera::use_camera;
 
 use crate::scene::Scene;
 use crate::{Error, Result};

@@ -4,15 +4,16 @@ mod integrator;
 mod tables;
 
 use self::tables::{luminaires, materials, meshes, objects, point, rgb, textures};
+use crate::shared::camera::CameraOption;
 use crate::shared::counts::pixels;
 use crate::shared::film_size::FilmSize;
 use crate::shared::foreseen::warn_of_the_picture;
-use crate::shared::printing::print;
+use crate::shared::printing::{Notes, print};
 use crate::shared::table::table;
 use luminaire::film::Demand;
-use luminaire::glam::DVec3;
+use luminaire::glam::{DVec3, Vec2};
 use luminaire::gpu::specialization::KernelModel;
-use luminaire::scene::{self, Environment, FilmSettings, Mesh, Projection, Scene};
+use luminaire::scene::{self, Environment, FilmSettings, Mesh, Projection, Scene, Sensor};
 use luminaire::{Error, Result};
 use std::collections::HashSet;
 use std::path::PathBuf;
@@ -46,11 +47,15 @@ pub struct Options {
     /// Height in pixels [default: the scene's, or from --width at the scene's aspect ratio].
     #[arg(long, value_name = "PIXELS", allow_negative_numbers = true, value_parser = pixels::<1, LARGEST_SIDE>)]
     height: Option<u32>,
+    #[command(flatten)]
+    camera: CameraOption,
 }
 
 /// Loads a scene and prints what is in it.
 pub fn run(options: &Options) -> Result<ExitCode> {
     let mut scene = scene::load(&options.scene)?;
+    // All cameras are listed, so that no note has to name them.
+    options.camera.choose(&mut scene, Notes { quiet: true })?;
     FilmSize { width: options.width, height: options.height, largest: LARGEST_SIDE }.apply(&mut scene.film);
     let FilmSettings { width, height, .. } = scene.film;
     // What no memory of this machine holds is told, and what nothing can hold is refused as `render` does.
@@ -83,7 +88,7 @@ fn describe(scene: &Scene) -> String {
                 ),
             ),
             row("bounds", format!("{low:.4} to {high:.4}{}", moved(scene))),
-            row("sensor", sensor(scene)),
+            row("sensor", sensor(scene, &scene.sensor)),
             row(
                 "film",
                 format!(
@@ -108,6 +113,10 @@ fn describe(scene: &Scene) -> String {
             row("film takes", film_memory(scene)),
         ],
     );
+    if scene.cameras.len() > 1 || scene.cameras.iter().any(|camera| !camera.name.is_empty()) {
+        let rows = scene.cameras.iter().map(|camera| row(&camera.name, sensor(scene, &camera.sensor)));
+        text += &format!("\ncameras\n{}", table(2, &rows.collect::<Vec<_>>()));
+    }
     text += &format!("\nmeshes\n{}", table(2, &meshes(scene)));
     text += &format!("\nobjects\n{}", table(2, &objects(scene)));
     text += &format!("\nmaterials\n{}", table(2, &materials(scene)));
@@ -138,8 +147,7 @@ fn row(name: &str, value: String) -> Vec<String> {
     vec![name.into(), value]
 }
 
-fn sensor(scene: &Scene) -> String {
-    let s = &scene.sensor;
+fn sensor(scene: &Scene, s: &Sensor) -> String {
     let projection = match s.projection {
         Projection::Perspective { fov } => format!("{fov} degrees high"),
         Projection::Orthographic { height } => format!("orthographic, {height} high"),
@@ -153,7 +161,11 @@ fn sensor(scene: &Scene) -> String {
         format!(", aperture of radius {} ({shape}), in focus at distance {}", lens.radius, lens.focus_distance)
     });
     let (position, target) = (point(scene, s.position), point(scene, s.target));
-    format!("at {position}, looking at {target}, up {}, {projection}{lens}", rgb(s.up))
+    let shift = match s.shift {
+        Vec2::ZERO => String::new(),
+        Vec2 { x, y } => format!(", shifted by {x} widths to the right and {y} heights upwards"),
+    };
+    format!("at {position}, looking at {target}, up {}, {projection}{shift}{lens}", rgb(s.up))
 }
 
 /// A filter's name in scene files.
@@ -227,8 +239,7 @@ mod tests {
     use super::*;
     use luminaire::glam::Vec3;
     use luminaire::scene::{
-        Estimator, Filter, Integrator, Lens, Luminaire, Maps, Material, Object, RenderSettings, Sensor, Texture,
-        Triangle,
+        Camera, Estimator, Filter, Integrator, Lens, Luminaire, Maps, Material, Object, RenderSettings, Texture, Triangle,
     };
 
     #[test]
@@ -288,7 +299,18 @@ mod tests {
                 up: Vec3::Y,
                 projection: Projection::Perspective { fov: 40.0 },
                 lens: Some(Lens { radius: 0.25, focus_distance: 3.0, blades: 6, rotation: 10.0 }),
+                shift: Vec2::ZERO,
             },
+            cameras: vec![
+                Camera {
+                    name: "front".into(),
+                    sensor: Sensor {
+                        shift: Vec2::new(-0.5, 0.25),
+                        ..luminaire::scene::build::pinhole(Vec3::Z, Vec3::ZERO, Vec3::Y, 30.0)
+                    },
+                };
+                2
+            ],
             film: FilmSettings { width: 64, height: 48, filter: Filter::BlackmanHarris, filter_radius: 1.5 },
             integrator: Integrator::Path(estimator),
             settings: RenderSettings::default(),
@@ -300,6 +322,8 @@ mod tests {
             "22 in 22 objects; 1 stored in 1 mesh",
             "64 x 48 pixels, blackman-harris filter of radius 1.5",
             "40 degrees high, aperture of radius 0.25 (6 blades, turned by 10 degrees), in focus at distance 3",
+            "front",
+            "30 degrees high, shifted by -0.5 widths to the right and 0.25 heights upwards",
             "radiance (0.5 0.5 0.5) from everywhere",
             "estimator `default`",
             "at most 4 indirect bounces",

@@ -59,6 +59,7 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     let mut seconds = Seconds::default();
     let start = Instant::now();
     let mut scene = scene::load(&options.scene)?;
+    options.camera.choose(&mut scene, notes)?;
     seconds.load = start.elapsed().as_secs_f64();
     outputs.check(scene.files.iter().map(|path| ("a file of the scene", &**path)))?;
     change(&mut scene, options)?;

@@ -1,6 +1,7 @@
 //! What to render, and how.
 
 use crate::shared::backend_name::BackendName;
+use crate::shared::camera::CameraOption;
 use crate::shared::counts::{pixels, samples, seed};
 use crate::shared::estimator::EstimatorOptions;
 use crate::shared::exit_codes::EXIT_CODES;
@@ -20,6 +21,8 @@ Examples:
       until the estimated error is 2 %, but no longer than ten minutes; and where it is how large
   luminaire render model.obj --spp 4096 -o model.exr --checkpoint model.checkpoint.exr --resume
       goes on where it was, however it ended; the same command again after Ctrl-C, a crash or a power cut
+  luminaire render house.toml --camera garden -o garden.png
+      one of the scene's cameras; --camera house-camera-1.toml is one that the window wrote
   luminaire render model.obj --samples 1024..2048 -o part-1.exr
       one part of four, on one machine of four; `luminaire merge part-*.exr -o model.exr` joins them
 
@@ -49,6 +52,9 @@ const REPLAY_CONFLICTS: [&str; 11] = [
 pub struct Options {
     /// A scene file (.toml) or any OBJ file.
     pub scene: PathBuf,
+
+    #[command(flatten)]
+    pub camera: CameraOption,
 
     /// A file to write; .png, .exr or .hdr says the format. May be given several times [default: <SCENE>.png here].
     #[arg(short, long, value_name = "FILE", help_heading = "Output")]

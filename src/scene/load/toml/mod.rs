@@ -1,6 +1,7 @@
 //! Scene files in TOML; `scenes/README.md` describes the format.
 
 mod advice;
+mod cameras;
 mod contents;
 mod file;
 mod foreign_words;
@@ -12,44 +13,53 @@ mod values;
 use super::bare_mesh;
 use super::loader::Loader;
 use super::text_file::read_bytes;
-use crate::scene::{Projection, RenderSettings, Scene, Sensor};
+use crate::scene::{Camera, Projection, RenderSettings, Scene, Sensor};
 use crate::{Error, Result};
 use advice::{in_plain_words, wrong_brackets};
+pub(super) use cameras::camera_file;
 use file::File;
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 use std::path::Path;
 use tables::SceneFile;
 
+/// The warning of a scene file without a camera.
+pub(super) const NO_SENSOR: &str = "no [sensor]; the camera is placed to frame the scene";
+
 /// Loads a scene file.
 pub(super) fn load(path: &Path) -> Result<Scene> {
+    let text = read_text(path)?;
+    let file = File { path, text: &text };
+    file.build(file.parse()?)
+}
+
+/// The text of a scene file.
+fn read_text(path: &Path) -> Result<String> {
     let bytes = read_bytes(path)?;
     let text = std::str::from_utf8(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes)).map_err(|error| {
         let line = 1 + bytes[..error.valid_up_to()].iter().filter(|byte| **byte == b'\n').count();
         Error::Parse { path: path.to_owned(), line, column: 0, message: "a scene file has to be UTF-8 text".into() }
     })?;
-    let file = File { path, text };
-    if let Some((span, message)) = wrong_brackets(text) {
-        return Err(file.error(span, message));
-    }
-    let scene: SceneFile = ::toml::from_str(text).map_err(|error| {
-        let span = error.span().unwrap_or(0..0);
-        file.error(span.clone(), in_plain_words(error.message().trim(), text, span))
-    })?;
-    file.build(scene)
+    Ok(text.to_owned())
 }
 
 impl File<'_> {
+    /// The tables of the file.
+    fn parse(&self) -> Result<SceneFile> {
+        if let Some((span, message)) = wrong_brackets(self.text) {
+            return Err(self.error(span, message));
+        }
+        ::toml::from_str(self.text).map_err(|error| {
+            let span = error.span().unwrap_or(0..0);
+            self.error(span.clone(), in_plain_words(error.message().trim(), self.text, span))
+        })
+    }
+
     fn build(&self, file: SceneFile) -> Result<Scene> {
         let film = self.film(file.film)?;
         let integrator = self.integrator(&file.integrator)?;
         // What is wrong in this file is said before any other file is read; where the origin is, only those know.
-        let near = file.sensor.as_ref().map_or(DVec3::ZERO, |table| far_origin(table.get_ref().position.0));
-        let mut fov = None;
-        if let Some(table) = &file.sensor
-            && let Projection::Perspective { fov: degrees } = self.sensor(table, near)?.projection
-        {
-            fov = Some(degrees);
-        }
+        let near = file.sensor.as_ref().map_or(DVec3::ZERO, |sensors| sensors.get_ref().near());
+        let cameras = self.cameras(file.sensor.as_ref(), None)?;
         for table in &file.luminaire {
             self.luminaire(table, near)?;
         }
@@ -58,8 +68,12 @@ impl File<'_> {
         if let Some(image) = file.environment.as_ref().and_then(|table| table.get_ref().image.as_ref()) {
             loader.files.extend(Some(self.beside(image.get_ref())).filter(|path| path.is_file()));
         }
-        if let Some(warning) = fov.and_then(radians::field_of_view) {
-            loader.warnings.push(self.warning(&warning));
+        for camera in &cameras {
+            if let Projection::Perspective { fov } = camera.sensor.projection
+                && let Some(warning) = radians::field_of_view(fov)
+            {
+                loader.warnings.push(self.warning(&warning));
+            }
         }
         let environment = match &file.environment {
             None => None,
@@ -75,7 +89,7 @@ impl File<'_> {
             return Err(Error::scene(self.path, "nothing to trace: the scene file has no [[object]]"));
         }
         let origin = loader.settle(&mut objects, &to_world);
-        let sensor = file.sensor.map(|table| self.sensor(&table, origin)).transpose()?;
+        let cameras: Vec<Camera> = self.cameras(file.sensor.as_ref(), Some(origin))?;
         let luminaires: Result<Vec<_>> = file.luminaire.iter().map(|table| self.luminaire(table, origin)).collect();
         let luminaires = luminaires?;
         let defaults = RenderSettings::default();
@@ -101,24 +115,23 @@ impl File<'_> {
                 up: Vec3::Y,
                 projection: Projection::Perspective { fov: 40.0 },
                 lens: None,
+                shift: Vec2::ZERO,
             },
+            cameras,
             film,
             integrator,
             settings,
             files: loader.files,
             warnings: loader.warnings,
         };
-        scene.sensor = sensor.unwrap_or_else(|| {
-            let sensor = bare_mesh::framing_sensor(&scene);
-            scene.warnings.push(self.warning("no [sensor]; the camera is placed to frame the scene"));
-            sensor
-        });
+        scene.sensor = match scene.cameras.first() {
+            Some(camera) => camera.sensor.clone(),
+            None => {
+                scene.warnings.push(self.warning(NO_SENSOR));
+                bare_mesh::framing_sensor(&scene)
+            }
+        };
         scene.warnings.extend(scene.dark_because());
         Ok(scene)
     }
-}
-
-/// Where the checks of a sensor at `position` take the origin to be, before it is known: at the sensor, if that is far away.
-fn far_origin(position: DVec3) -> DVec3 {
-    if position.abs().max_element() > 1e4 { position } else { DVec3::ZERO }
 }

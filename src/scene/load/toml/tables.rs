@@ -1,8 +1,9 @@
 //! The tables of a scene file, as `scenes/README.md` describes them.
 
+use super::cameras::Sensors;
 use super::values::{
     Angle, Blades, Bounces, Colour, Eta, Exact, Exponent, Exposure, FilterRadius, Finite, Fov, MapOffset, MapScale,
-    Matrix, NotNegative, Pixels, Positive, Probability, Samples, Triple, Unit,
+    Matrix, NotNegative, Pixels, Positive, Probability, Samples, Shift, Triple, Unit,
 };
 use crate::scene::{AreaSampling, Directions, Extinction, Filter, LightSampling, Sampler};
 use ::toml::Spanned;
@@ -12,7 +13,7 @@ use serde::Deserialize;
 #[serde(deny_unknown_fields)]
 pub(super) struct SceneFile {
     pub film: Option<Spanned<FilmTable>>,
-    pub sensor: Option<Spanned<SensorTable>>,
+    pub sensor: Option<Spanned<Sensors>>,
     pub environment: Option<Spanned<EnvironmentTable>>,
     #[serde(default)]
     pub integrator: IntegratorTable,
@@ -39,6 +40,7 @@ pub(super) struct FilmTable {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SensorTable {
+    pub name: Option<Spanned<String>>,
     #[serde(default)]
     pub kind: SensorKind,
     pub position: Triple,
@@ -50,6 +52,7 @@ pub(super) struct SensorTable {
     pub focus_distance: Option<Spanned<Positive>>,
     pub blades: Option<Spanned<Blades>>,
     pub blade_rotation: Option<Spanned<Finite>>,
+    pub shift: Option<Shift>,
 }
 
 #[derive(Deserialize, Clone, Copy, Default, PartialEq, Eq)]
