@@ -27,6 +27,8 @@ layout(constant_id = 20) const uint DIRECTIONS = 2u;
 layout(constant_id = 21) const uint EXTINCTION = 3u;
 layout(constant_id = 22) const bool THRESHOLD = false;         // paths of small albedo end
 
+layout(constant_id = 23) const bool TRANSPARENT = false;       // the camera does not see where its rays escape to, and they are counted
+
 const uint LIGHT_NONE = 0u;
 const uint LIGHT_DIRECT = 1u;
 const uint LIGHT_MIS = 2u;

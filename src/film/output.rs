@@ -1,20 +1,30 @@
 //! Films to disk.
 
 use super::{Aovs, ErrorEstimate, Film};
-use crate::Result;
 use crate::files::write_file_atomically;
-use crate::picture::{Attribute, Exr, Format, Values, save_linear};
+use crate::picture::{Attribute, Exr, Format, Values, save_linear, save_png_with_alpha};
+use crate::{Error, Result};
 use std::fs::File;
 use std::path::Path;
+
+/// Why a picture with alpha is not written as HDR.
+pub const HDR_HAS_NO_ALPHA: &str = "an HDR file has no alpha: write a transparent picture as .png or .exr";
 
 impl Film {
     /// Writes the picture to `path` in the format of its ending. `exposure` is in stops and changes a PNG only.
     ///
     /// # Errors
-    /// [`Error::Usage`](crate::Error::Usage) for an unknown ending, [`Error::Write`](crate::Error::Write) if the system refuses; then nothing has changed at `path`.
+    /// [`Error::Usage`](crate::Error::Usage) for an unknown ending, or a picture with alpha as HDR, [`Error::Write`](crate::Error::Write) if the system refuses; then nothing has changed at `path`.
     pub fn save(&self, path: &Path, exposure: f32) -> Result<()> {
         match Format::of(path)? {
             Format::Exr => self.save_exr(path, vec![], vec![], |_| Ok(())),
+            Format::Png if self.missed.is_some() => {
+                let alphas = self.alphas().unwrap_or_default();
+                save_png_with_alpha(path, (self.width, self.height), &self.to_linear(), &alphas, exposure)
+            }
+            Format::Hdr if self.missed.is_some() => {
+                Err(Error::Usage(format!("{}: {HDR_HAS_NO_ALPHA}", path.display())))
+            }
             Format::Png | Format::Hdr => save_linear(path, self.width, self.height, &self.to_linear(), exposure),
         }
     }
@@ -47,11 +57,11 @@ impl Film {
     }
 }
 
-/// Writes an EXR file: a film's means, their standard errors, and `more`.
+/// Writes an EXR file: a film's means, their standard errors, alpha if it has it (the means are those over black, as the format wants them), and `more`.
 fn write_exr<'a>(
     out: &mut File,
     film: &Film,
-    more: Vec<(String, Values)>,
+    mut more: Vec<(String, Values)>,
     mut attributes: Vec<(&'a str, Attribute<'a>)>,
 ) -> std::io::Result<()> {
     let (linear, errors) = (film.to_linear(), film.error_map());
@@ -64,7 +74,11 @@ fn write_exr<'a>(
     }
     let error = errors.as_ref().map(|errors| &errors.standard_error[..]);
     let rgb = bytemuck::cast_slice(&linear);
-    let exr = Exr { width: film.width, height: film.height, rgb, error, more, attributes: &attributes };
+    if let Some(alphas) = film.alphas() {
+        more.push(("A".into(), Values::Float(alphas)));
+    }
+    let exr =
+        Exr { width: film.width, height: film.height, rgb, error, more, attributes: &attributes, crop: film.crop };
     exr.write(out).map_err(std::io::Error::other)
 }
 

@@ -5,6 +5,8 @@
 
 use bytemuck::{Pod, Zeroable};
 
+/// What a sample whose camera ray met nothing adds to [`PixelSum::dropped`], in a picture with alpha: groups are shorter.
+pub const MISSED: u32 = 1 << 16;
 /// An index that is none.
 pub const NONE: u32 = u32::MAX;
 /// [`Material::impulse_probability`] where the albedos say how probable an impulse is.
@@ -321,7 +323,7 @@ shared! {
         rays: u32,
         /// Shadow rays among them.
         shadow_rays: u32,
-        /// Samples that were not finite.
+        /// Samples that were not finite; with `TRANSPARENT` also [`MISSED`] for each whose camera ray met nothing.
         dropped: u32,
     }
 }

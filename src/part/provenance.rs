@@ -1,5 +1,6 @@
 //! What was rendered: all that samples depend on, so that samples of two pictures are never added up.
 
+use crate::picture::Crop;
 use crate::scene::{
     Environment, EnvironmentImage, FilmSettings, Mesh, Object, RenderSettings, Scene, Texture, Triangle,
 };
@@ -30,6 +31,12 @@ pub struct Provenance {
     pub digests: BTreeMap<String, String>,
     /// Exposure of a PNG in stops. Another one makes no difference.
     pub exposure: f32,
+    /// Whether the picture has alpha.
+    #[serde(default)]
+    pub transparent: bool,
+    /// Which part of the picture it is, if it is not the whole.
+    #[serde(default)]
+    pub crop: Option<Crop>,
 }
 
 impl Provenance {
@@ -56,7 +63,7 @@ impl Provenance {
             files: _,
         } = scene;
         let FilmSettings { width, height, filter, filter_radius } = *film;
-        let RenderSettings { spp: _, seed, exposure, sampler } = *settings;
+        let RenderSettings { spp: _, seed, exposure, sampler, transparent } = *settings;
         let digests = [
             ("geometry", geometry(meshes, objects)),
             (
@@ -97,7 +104,19 @@ impl Provenance {
             integrator: format!("{integrator:?}"),
             digests: digests.map(|(name, value)| (name.to_owned(), value)).into(),
             exposure,
+            transparent,
+            crop: None,
         }
+    }
+
+    /// That of a render of a part of the picture.
+    pub fn cropped(self, crop: Option<Crop>) -> Self {
+        Provenance { crop, ..self }
+    }
+
+    /// Width and height of the film.
+    pub(super) fn film_size(&self) -> (u32, u32) {
+        self.crop.map_or((self.width, self.height), |crop| (crop.width, crop.height))
     }
 
     /// In what a render differs from another, of which this is the provenance; empty if their samples belong to one picture.
@@ -112,6 +131,10 @@ impl Provenance {
         compare("version", &self.version, &other.version);
         let size = |p: &Provenance| format!("{} x {}", p.width, p.height);
         compare("size", &size(self), &size(other));
+        let crop = |p: &Provenance| p.crop.map_or("all of it".into(), |crop| crop.to_string());
+        compare("crop", &crop(self), &crop(other));
+        let background = |p: &Provenance| if p.transparent { "transparent" } else { "opaque" };
+        compare("background", &background(self), &background(other));
         compare("seed", &self.seed, &other.seed);
         compare("sampler", &self.sampler, &other.sampler);
         compare("integrator", &self.integrator, &other.integrator);

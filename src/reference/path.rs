@@ -58,7 +58,7 @@ impl Reference {
     }
 
     /// Follows a path for as long as `met` says, which is given every ray of it.
-    fn follow(&self, pixel: u32, sample: u32, met: &mut impl FnMut(Vertex) -> bool) -> (DVec3, Rays) {
+    pub(super) fn follow(&self, pixel: u32, sample: u32, met: &mut impl FnMut(Vertex) -> bool) -> (DVec3, Rays) {
         let settings = &self.scene.settings;
         let numbers = |block: u32| settings.sampler.numbers(pixel, sample, block, settings.seed);
         let salt = |ray: u32| ray_salt(pixel, sample, ray, settings.seed);
@@ -79,8 +79,11 @@ impl Reference {
         for bounce in 0.. {
             rays.all += 1;
             let Some(hit) = self.closest_hit(origin, direction, f64::INFINITY, salt(2 * bounce)) else {
-                let weight = emission_weight(estimator.light_sampling, pdf, self.environment_pdf(direction));
-                radiance += throughput * weight * self.environment_radiance(direction);
+                // Hidden from the camera itself.
+                if bounce > 0 || !settings.transparent {
+                    let weight = emission_weight(estimator.light_sampling, pdf, self.environment_pdf(direction));
+                    radiance += throughput * weight * self.environment_radiance(direction);
+                }
                 met(Vertex { hit: None, origin, direction, throughput, radiance });
                 break;
             };

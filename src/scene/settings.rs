@@ -34,10 +34,13 @@ pub struct RenderSettings {
     pub exposure: f32,
     /// Where the random numbers come from.
     pub sampler: Sampler,
+    /// The camera does not see where rays escape to, and the picture has alpha: the share of a pixel's samples that met something. The environment still lights
+    /// the scene, and is seen in mirrors and through glass, which count as opaque.
+    pub transparent: bool,
 }
 
 impl Default for RenderSettings {
     fn default() -> Self {
-        RenderSettings { spp: 64, seed: 0, exposure: 0.0, sampler: Sampler::default() }
+        RenderSettings { spp: 64, seed: 0, exposure: 0.0, sampler: Sampler::default(), transparent: false }
     }
 }

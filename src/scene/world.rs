@@ -1,7 +1,8 @@
 //! `Scene`: the scene as a whole.
 
 use super::{
-    Camera, Environment, FilmSettings, Integrator, Luminaire, Material, Mesh, Object, RenderSettings, Sensor, Texture, Triangle,
+    Camera, Environment, FilmSettings, Integrator, Luminaire, Material, Mesh, Object, RenderSettings, Sensor, Texture,
+    Triangle,
 };
 use super::{moved_box, widen};
 use glam::DVec3;

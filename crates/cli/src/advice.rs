@@ -27,7 +27,20 @@ const OPTIONS: &[(&[&str], &str)] = &[
     (&["out", "file", "outfile", "output-file", "save", "image"], "the picture is named with -o FILE.png"),
     (&["output-dir", "outdir", "folder", "dir"], "-o FOLDER/FILE.png names the folder, too"),
     (
-        &["camera", "cam", "sensor", "fov", "lookat", "look-at", "eye", "position", "target", "view", "viewpoint", "shift"],
+        &[
+            "camera",
+            "cam",
+            "sensor",
+            "fov",
+            "lookat",
+            "look-at",
+            "eye",
+            "position",
+            "target",
+            "view",
+            "viewpoint",
+            "shift",
+        ],
         "the camera is the table [sensor] of the scene file, or --camera FILE.toml, which `luminaire view` writes with the key C; --camera NAME takes one of several",
     ),
     (
@@ -50,7 +63,14 @@ const OPTIONS: &[(&[&str], &str)] = &[
         &["frame", "frames", "animation", "a", "start", "end"],
         "a scene is one picture; an animation is a scene file for each of its pictures",
     ),
-    (&["crop", "region", "border", "window"], "the whole film is rendered; a part of the samples is --samples A..B"),
+    (
+        &["crop", "region", "border", "window", "crop-window", "cropwindow", "roi", "tile"],
+        "a part of the picture is --crop X,Y,W,H of `luminaire render`, in pixels; a part of the samples is --samples A..B",
+    ),
+    (
+        &["transparent", "alpha", "rgba", "film-transparent", "transparency", "no-background", "hide-emitters"],
+        "a transparent background is --transparent of `luminaire render`",
+    ),
     (
         &["aovs", "passes", "layers", "albedo", "normals", "depth-map"],
         "layers for denoisers and compositing are --aov, in an EXR file",

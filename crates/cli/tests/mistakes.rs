@@ -166,7 +166,11 @@ fn scene_files() {
             "[[sensor]]\nfov = 45\nposition = [0, 0, 3]\ntarget = [0, 0, 0]\n[[sensor]]\nfov = 45\nposition = [0, 0, 3]\ntarget = [0, 0, 0]\n",
             &["`name`", "--camera"],
         ),
-        ("", "[[sensor]]\nname = \"a\"\nfovy = 45\nposition = [0, 0, 3]\ntarget = [0, 0, 0]\n", &["in [sensor]", "`fov`"]),
+        (
+            "",
+            "[[sensor]]\nname = \"a\"\nfovy = 45\nposition = [0, 0, 3]\ntarget = [0, 0, 0]\n",
+            &["in [sensor]", "`fov`"],
+        ),
         ("", "[[sensor]]\nname = \"a\"\nfov = 45\ntarget = [0, 0, 0]\n", &["`position`", "the eye point"]),
         (SENSOR, "fov = 45\nname = \" \"\n", &["needs a `name`"]),
         (SENSOR, "fov = 45\nname = 3\n", &["string"]),

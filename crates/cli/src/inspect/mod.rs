@@ -239,7 +239,8 @@ mod tests {
     use super::*;
     use luminaire::glam::Vec3;
     use luminaire::scene::{
-        Camera, Estimator, Filter, Integrator, Lens, Luminaire, Maps, Material, Object, RenderSettings, Texture, Triangle,
+        Camera, Estimator, Filter, Integrator, Lens, Luminaire, Maps, Material, Object, RenderSettings, Texture,
+        Triangle,
     };
 
     #[test]

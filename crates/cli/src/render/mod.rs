@@ -30,7 +30,8 @@ use crate::shared::outputs::Outputs;
 use crate::shared::printing::Notes;
 use crate::shared::values::Pixel;
 use luminaire::backend::{self, Renderer, Request};
-use luminaire::render::{End, Limits, Rendered, aovs, resume};
+use luminaire::film::Demand;
+use luminaire::render::{Cropped, End, Limits, Rendered, aovs, resume};
 use luminaire::scene::{self, FilmSettings, Scene};
 use luminaire::{Error, Result};
 use std::path::PathBuf;
@@ -82,7 +83,17 @@ fn change(scene: &mut Scene, options: &Options) -> Result<()> {
     options.estimator.apply(scene)?;
     scene.settings.seed = options.seed.unwrap_or(scene.settings.seed);
     scene.settings.exposure = options.exposure.unwrap_or(scene.settings.exposure);
+    scene.settings.transparent = options.transparent;
     let FilmSettings { width, height, .. } = scene.film;
+    // Every pixel of the whole picture has a number, also where only a part is rendered.
+    if let Err(error @ Error::Usage(_)) = (Demand { width, height, ..Demand::default() }).check() {
+        return Err(error);
+    }
+    if let Some(crop) = options.crop_of((width, height)).filter(|crop| !crop.is_inside()) {
+        return Err(Error::Usage(format!(
+            "--crop {crop} reaches beyond the picture, which has {width} x {height} pixels: X + W may be {width} at most, and Y + H {height}"
+        )));
+    }
     outputs::demand(options, &scene.film).check()?;
     outputs::check_error_map(options, limits(options, scene).spp, " (the scene says `spp = 1`)")?;
     match options.pixel {
@@ -129,6 +140,8 @@ fn trace(
         }
     };
     let mut tracer = FailingTracer::new(renderer.tracer.as_mut())?;
+    let crop = options.crop_of((scene.film.width, scene.film.height));
+    let mut tracer = Cropped::new(&mut tracer, crop.as_ref());
     let mut rendered = resume(&mut tracer, begun, limits, &mut watch, &interrupts::STOP);
     reporter.finish();
     if let (Some(wanted), least) = (limits.spp, rendered.film.first_sample + rendered.film.least_samples())

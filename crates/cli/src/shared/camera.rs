@@ -28,7 +28,8 @@ impl CameraOption {
         if let [first, others @ ..] = &scene.cameras[..]
             && !others.is_empty()
         {
-            let names: Vec<String> = others.iter().take(MOST_NAMES).map(|camera| format!("`{}`", camera.name)).collect();
+            let names: Vec<String> =
+                others.iter().take(MOST_NAMES).map(|camera| format!("`{}`", camera.name)).collect();
             let more = if others.len() > MOST_NAMES { ", ... (`luminaire inspect` lists all)" } else { "" };
             notes.note(&format!(
                 "camera `{}`, the first of {}; --camera NAME takes another: {}{more}",

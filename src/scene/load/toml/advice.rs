@@ -64,7 +64,9 @@ pub(super) fn wrong_brackets(text: &str) -> Option<(Range<usize>, String)> {
         let message = match (list, value.get_ref()) {
             (false, DeValue::Table(_)) => continue,
             // Of which there may be one or several.
-            (false, DeValue::Array(tables)) if name == "sensor" && tables.iter().all(|value| is_table(value.get_ref())) => {
+            (false, DeValue::Array(tables))
+                if name == "sensor" && tables.iter().all(|value| is_table(value.get_ref())) =>
+            {
                 continue;
             }
             (true, DeValue::Array(tables)) if tables.iter().all(|value| is_table(value.get_ref())) => continue,

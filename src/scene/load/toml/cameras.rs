@@ -1,50 +1,13 @@
 //! The cameras of a scene file, `[sensor]` or `[[sensor]]`, and of a file that holds nothing else.
 
-use super::file::File;
-use super::read_text;
-use super::tables::{SceneFile, SensorTable};
+use super::file::{File, read_text};
+use super::tables::{SceneFile, SensorTable, Sensors};
 use crate::scene::Camera;
 use crate::{Error, Result};
 use ::toml::Spanned;
 use glam::DVec3;
-use serde::de::value::MapAccessDeserializer;
-use serde::de::{MapAccess, SeqAccess, Visitor};
-use serde::{Deserialize, Deserializer};
 use std::ops::Range;
 use std::path::Path;
-
-/// One table or a list of them.
-#[allow(clippy::large_enum_variant, reason = "there is one in a file")]
-pub(super) enum Sensors {
-    /// `[sensor]`.
-    One(SensorTable),
-    /// `[[sensor]]`, any number of times.
-    Several(Vec<Spanned<SensorTable>>),
-}
-
-impl<'de> Deserialize<'de> for Sensors {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
-        // Not an untagged enum, which would lose the places and the words of errors within.
-        struct Tables;
-        impl<'de> Visitor<'de> for Tables {
-            type Value = Sensors;
-            fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-                f.write_str("a table [sensor], or a list of tables [[sensor]]")
-            }
-            fn visit_map<A: MapAccess<'de>>(self, table: A) -> std::result::Result<Sensors, A::Error> {
-                SensorTable::deserialize(MapAccessDeserializer::new(table)).map(Sensors::One)
-            }
-            fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> std::result::Result<Sensors, A::Error> {
-                let mut tables = Vec::new();
-                while let Some(table) = list.next_element()? {
-                    tables.push(table);
-                }
-                Ok(Sensors::Several(tables))
-            }
-        }
-        deserializer.deserialize_any(Tables)
-    }
-}
 
 impl Sensors {
     /// The tables; `whole` is the place of all.

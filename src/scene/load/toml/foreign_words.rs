@@ -6,7 +6,11 @@ type Words = (&'static str, &'static [&'static str], &'static str);
 /// Keys in small letters with underscores. The first row that fits is taken.
 pub(super) const KEYS: &[Words] = &[
     // Outside of every table, or a table of another name.
-    ("", &["camera", "cameras", "view", "perspective"], "the camera is the table [sensor]; several are [[sensor]], each with a `name`"),
+    (
+        "",
+        &["camera", "cameras", "view", "perspective"],
+        "the camera is the table [sensor]; several are [[sensor]], each with a `name`",
+    ),
     (
         "top",
         &["light", "lights", "lamp", "lamps", "emitter", "emitters", "luminaires", "sun", "point_light"],

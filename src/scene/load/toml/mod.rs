@@ -12,12 +12,11 @@ mod values;
 
 use super::bare_mesh;
 use super::loader::Loader;
-use super::text_file::read_bytes;
 use crate::scene::{Camera, Projection, RenderSettings, Scene, Sensor};
 use crate::{Error, Result};
 use advice::{in_plain_words, wrong_brackets};
 pub(super) use cameras::camera_file;
-use file::File;
+use file::{File, read_text};
 use glam::{DVec3, Vec2, Vec3};
 use std::path::Path;
 use tables::SceneFile;
@@ -30,16 +29,6 @@ pub(super) fn load(path: &Path) -> Result<Scene> {
     let text = read_text(path)?;
     let file = File { path, text: &text };
     file.build(file.parse()?)
-}
-
-/// The text of a scene file.
-fn read_text(path: &Path) -> Result<String> {
-    let bytes = read_bytes(path)?;
-    let text = std::str::from_utf8(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes)).map_err(|error| {
-        let line = 1 + bytes[..error.valid_up_to()].iter().filter(|byte| **byte == b'\n').count();
-        Error::Parse { path: path.to_owned(), line, column: 0, message: "a scene file has to be UTF-8 text".into() }
-    })?;
-    Ok(text.to_owned())
 }
 
 impl File<'_> {
@@ -98,6 +87,7 @@ impl File<'_> {
             seed: file.render.seed.unwrap_or(defaults.seed),
             exposure: file.render.exposure.map_or(defaults.exposure, |exposure| exposure.0),
             sampler: file.render.sampler.unwrap_or(defaults.sampler),
+            transparent: defaults.transparent,
         };
         let (materials, textures) = loader.finish_materials(&objects);
         let mut scene = Scene {

@@ -43,10 +43,9 @@ impl File<'_> {
                 return Err(self.error(fov.span(), message));
             }
             (SensorKind::Perspective, None, None) => {
-                return Err(self.error(
-                    span,
-                    "missing field `fov`: the vertical field of view in degrees, for example 45",
-                ));
+                return Err(
+                    self.error(span, "missing field `fov`: the vertical field of view in degrees, for example 45")
+                );
             }
             (SensorKind::Orthographic, None, None) => {
                 let message = "missing field `height`: how much of the scene the picture shows, from bottom to top";

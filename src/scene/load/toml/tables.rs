@@ -1,13 +1,14 @@
 //! The tables of a scene file, as `scenes/README.md` describes them.
 
-use super::cameras::Sensors;
 use super::values::{
     Angle, Blades, Bounces, Colour, Eta, Exact, Exponent, Exposure, FilterRadius, Finite, Fov, MapOffset, MapScale,
     Matrix, NotNegative, Pixels, Positive, Probability, Samples, Shift, Triple, Unit,
 };
 use crate::scene::{AreaSampling, Directions, Extinction, Filter, LightSampling, Sampler};
 use ::toml::Spanned;
-use serde::Deserialize;
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{MapAccess, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -53,6 +54,39 @@ pub(super) struct SensorTable {
     pub blades: Option<Spanned<Blades>>,
     pub blade_rotation: Option<Spanned<Finite>>,
     pub shift: Option<Shift>,
+}
+
+/// One table or a list of them.
+#[allow(clippy::large_enum_variant, reason = "there is one in a file")]
+pub(super) enum Sensors {
+    /// `[sensor]`.
+    One(SensorTable),
+    /// `[[sensor]]`, any number of times.
+    Several(Vec<Spanned<SensorTable>>),
+}
+
+impl<'de> Deserialize<'de> for Sensors {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+        // Not an untagged enum, which would lose the places and the words of errors within.
+        struct Tables;
+        impl<'de> Visitor<'de> for Tables {
+            type Value = Sensors;
+            fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+                f.write_str("a table [sensor], or a list of tables [[sensor]]")
+            }
+            fn visit_map<A: MapAccess<'de>>(self, table: A) -> std::result::Result<Sensors, A::Error> {
+                SensorTable::deserialize(MapAccessDeserializer::new(table)).map(Sensors::One)
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> std::result::Result<Sensors, A::Error> {
+                let mut tables = Vec::new();
+                while let Some(table) = list.next_element()? {
+                    tables.push(table);
+                }
+                Ok(Sensors::Several(tables))
+            }
+        }
+        deserializer.deserialize_any(Tables)
+    }
 }
 
 #[derive(Deserialize, Clone, Copy, Default, PartialEq, Eq)]
