@@ -51,7 +51,7 @@ fn plain(parts: Vec<Part>) -> Vec<u8> {
 fn what_is_written_is_read() {
     let error: Vec<_> = (0..6).map(|i| [0.5, i as f32, f32::MIN_POSITIVE]).collect();
     let attributes = [("samples", Attribute::Number(64.0)), ("scene", Attribute::Text("b\u{e9} \u{4e16}"))];
-    let exr = Exr { width: 3, height: 2, rgb: &rgb(), error: Some(&error), more: vec![], attributes: &attributes };
+    let exr = Exr { width: 3, height: 2, rgb: &rgb(), error: Some(&error), more: vec![], attributes: &attributes, crop: None };
     let bytes = exr.clone().encode().unwrap();
     let picture = opened(&bytes).unwrap();
     assert_eq!((picture.width, picture.height, picture.clamped), (3, 2, false));
@@ -77,7 +77,7 @@ fn what_is_written_is_read() {
 fn one_picture_has_one_file() {
     let names: Vec<String> = (0..20).map(|i| format!("number {i}")).collect();
     let attributes: Vec<_> = names.iter().map(|name| (&**name, Attribute::Number(1.0))).collect();
-    let exr = Exr { width: 3, height: 2, rgb: &rgb(), error: None, more: vec![], attributes: &attributes };
+    let exr = Exr { width: 3, height: 2, rgb: &rgb(), error: None, more: vec![], attributes: &attributes, crop: None };
     let bytes = exr.clone().encode().unwrap();
     assert!((0..10).all(|_| exr.clone().encode().unwrap() == bytes));
 }
