@@ -26,7 +26,7 @@ Space              pause
 
 P                  save what is shown as PNG
 O                  save the film as EXR
-C                  write the camera and the exposure, for --camera FILE
+C                  write camera and exposure (--camera FILE)
 
 H or ?             this help
 Esc                quit";
