@@ -53,7 +53,7 @@ void main() {
             if (IMPULSES) albedo += max(material.reflection, DIELECTRICS ? material.transmission : vec3(0.0));
         }
         normal += s.shading_normal;
-        depth += dot(s.position - frame.position.xyz, frame.forward.xyz) + frame.start;
+        depth += dot(s.position - frame.position.xyz, frame.axis.xyz) + frame.start;
         hits++;
     }
     aovs[id.y * batch.tile_width + id.x] =

@@ -6,7 +6,7 @@ struct Path {
     vec3 direction;
     vec3 throughput;    // what a unit of radiance along that ray adds to the pixel
     vec3 radiance;      // what was found so far
-    uint bounce;        // surfaces met so far
+    uint bounce;        // surfaces met so far; NONE at the end of one that met nothing, where TRANSPARENT
     float pdf;          // density per steradian with which the path went there (`surviving`); or IMPULSE, also for the camera's
     float eta_scale;    // product of the squared relative indices that were passed, by which refraction diluted the throughput
     vec3 albedo;        // product of the albedos (combinedAlbedo)
@@ -34,6 +34,10 @@ bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uve
     rays.x++;
     uint salt = HOLES ? ray_salt(pixel_index, sample_index, 2u * path.bounce, frame.seed) : 0u;
     if (!closest_hit(path.origin, path.direction, INFINITY, salt, hit)) {
+        if (TRANSPARENT && path.bounce == 0u) {
+            path.bounce = NONE;
+            return false;
+        }
         // Without an environment escaping light disappears.
         if (ENVIRONMENT) {
             float density = 0.0;

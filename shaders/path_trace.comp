@@ -35,6 +35,8 @@ layout(set = 0, binding = 8, std430) buffer Dropped {
     uvec2 samples[];
 } dropped;
 
+// What a sample adds to `dropped` that met nothing, where TRANSPARENT. The twin is in src/gpu/layout.rs.
+const uint MISSED = 0x10000u;
 // The twin is in src/film/batch.rs.
 const float MOST_RADIANCE = 1e36;
 
@@ -75,6 +77,7 @@ void main() {
                 uint named = atomicAdd(dropped.count, 1u);
                 if (named < dropped.samples.length()) dropped.samples[named] = uvec2(pixel_index, sample_index);
             }
+            if (TRANSPARENT && path.bounce == NONE) not_finite += MISSED;
             offset += PARTS;
             if (offset >= count) {
                 sums[slot + part * pixels] = PixelSum(float[3](sum.x, sum.y, sum.z), rays.x, rays.y, not_finite);

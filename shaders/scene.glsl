@@ -27,6 +27,8 @@ layout(constant_id = 20) const uint DIRECTIONS = 2u;
 layout(constant_id = 21) const uint EXTINCTION = 3u;
 layout(constant_id = 22) const bool THRESHOLD = false;         // paths of small albedo end
 
+layout(constant_id = 23) const bool TRANSPARENT = false;       // the camera does not see where its rays escape to, and they are counted
+
 const uint LIGHT_NONE = 0u;
 const uint LIGHT_DIRECT = 1u;
 const uint LIGHT_MIS = 2u;
@@ -42,8 +44,9 @@ const uint EXTINCTION_THROUGHPUT = 3u;
 const int FILTER_TEXELS = 65;
 
 layout(set = 0, binding = 0, std140) uniform Frame {
-    vec4 position;                        // eye point, or a point `start` in front of it
-    vec4 forward;                         // unit line of sight
+    vec4 position;                        // eye point, or a point `start` in front of it; or where the middle one of the parallel rays begins
+    vec4 forward;                         // to the middle of the picture, 1 along the line of sight; or the direction of the parallel rays
+    vec4 axis;                            // unit line of sight: `forward` but for a shift
     vec4 right;                           // to the right edge of the picture: at distance 1, or of the parallel rays
     vec4 up;                              // to the upper edge
     float lens_radius;                    // of the aperture; 0: a pinhole

@@ -65,7 +65,7 @@
 //! | 12 | Area Luminaires: of any shape, by area or solid angle, with MIS | `luminaire.glsl`: `direct_light`, `is_near`; `warp.glsl`: `spherical_triangle` | `gpu::pictures::irradiance_of_a_triangle_lamp`, `reference::light` | `lamps`, `many-lights` |
 //! | 13 | Impulse Reflection: 60 % impulse, 40 % other | `impulse.glsl`: `impulses`; `scatter.glsl`: `scatter`; [`reference::impulse`] | `reference::impulses` | `mirror` |
 //! | 14 | Adding Transmission: refraction, BSDF over the sphere | `impulse.glsl`: `fresnel`, `refract_direction`; [`reference::impulse`] | `reference::impulses`, `gpu::features` ("glass") | `glass`, `furnace/glass` |
-//! | 15 | Sensor Modelling: pixel filter, lens, projection | `sensor.glsl`: `sensor_ray`; [`reference::sensor`] | `reference::sensor`, `gpu::sensor` | `lens`, `lens/orthographic` |
+//! | 15 | Sensor Modelling: pixel filter, lens, projection, shift | `sensor.glsl`: `sensor_ray`; [`reference::sensor`] | `reference::sensor`, `gpu::sensor` | `lens`, `lens/orthographic` |
 //! | 16 | Assumptions: escaping light disappears, steady state, RGB | `path.glsl`: `extend_path`; [`scene::Environment`] where a scene asks for one | `reference::environment`, `gpu::features` ("open air") | `furnace`, `environment` |
 //!
 //! Beyond the slides: multiple importance sampling (`luminaire.glsl`: `emission_weight`, `power_heuristic`), textures and holes

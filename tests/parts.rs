@@ -3,7 +3,9 @@
 use glam::{Affine3A, Vec3};
 use luminaire::backend::{self, Backend, Request};
 use luminaire::part::{self, Provenance};
-use luminaire::render::{End, Limits, Rendered};
+use luminaire::picture::Crop;
+use luminaire::reference::Reference;
+use luminaire::render::{Cropped, End, Limits, Rendered, resume};
 use luminaire::scene::build::{add, empty, lamp, quad};
 use luminaire::{Error, Film, Scene};
 use std::io::{Seek, SeekFrom, Write};
@@ -65,6 +67,38 @@ fn no_byte_changes_unnoticed() {
     assert!(read(&path).unwrap_err().contains("damaged"));
     std::fs::write(&path, &sound).unwrap();
     assert!(read(&path).unwrap() == rendered.film && part::resume(&path, &scene).is_ok());
+}
+
+/// A transparent piece of a picture is read back with its alpha and its place, and nothing else goes on from it.
+#[test]
+fn a_transparent_crop_is_read_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("c.exr");
+    let (mut scene, _) = rendered();
+    scene.settings.transparent = true;
+    (scene.film.width, scene.film.height) = (5, 4);
+    // The wall's left edge.
+    scene.sensor.shift.x = -1.0;
+    let crop = Crop { x: 2, y: 1, width: 3, height: 2, whole: (5, 4) };
+    let mut rendered = Rendered::nothing_of_crop(crop, 0).unwrap();
+    let limits = Limits { spp: Some(6), ..Limits::default() };
+    let mut tracer = Reference::new(&scene);
+    let mut tracer = Cropped::new(&mut tracer, Some(&crop));
+    rendered.film.count_misses();
+    let rendered = resume(&mut tracer, rendered, limits, &mut |_| {}, &AtomicBool::new(false));
+    let alphas = rendered.film.alphas().unwrap();
+    assert!(alphas.contains(&0.0) && alphas.iter().any(|alpha| *alpha > 0.0), "{alphas:?}");
+    let provenance = Provenance::of(&scene).cropped(Some(crop));
+    part::save(&path, &rendered, &provenance).unwrap();
+    assert!(read(&path).unwrap() == rendered.film);
+    let merged = part::merge(std::slice::from_ref(&path)).unwrap().0;
+    assert!(merged.film == rendered.film && merged.film.crop == Some(crop));
+    assert!(part::resume_crop(&path, &scene, Some(crop)).unwrap().film == rendered.film);
+    let refused = |scene: &Scene, crop| part::resume_crop(&path, scene, crop).unwrap_err().to_string();
+    assert!(refused(&scene, None).contains("crop (2,1,3,2 there, all of it here)"));
+    assert!(refused(&scene, Some(Crop { x: 1, ..crop })).contains("crop (2,1,3,2 there, 1,1,3,2 here)"));
+    scene.settings.transparent = false;
+    assert!(refused(&scene, Some(crop)).contains("background (transparent there, opaque here)"));
 }
 
 #[test]

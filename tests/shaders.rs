@@ -270,6 +270,7 @@ fn twins() -> Vec<(&'static str, f64)> {
         ("QUARTER_PI", FRAC_PI_4),
         ("INFINITY_BITS", f32::INFINITY.to_bits().into()),
         ("NONE", layout::NONE.into()),
+        ("MISSED", layout::MISSED.into()),
         ("BY_ALBEDOS", layout::BY_ALBEDOS.into()),
         ("MIRROR", layout::MIRROR.into()),
         ("LONGEST_EDGE", layout::LONGEST_EDGE.into()),

@@ -80,6 +80,8 @@ pub struct PixelSum {
     pub rays: Rays,
     /// Samples that were not finite and are left out.
     pub dropped: u32,
+    /// Samples whose camera ray met nothing; counted only where the picture is to have alpha.
+    pub missed: u32,
 }
 
 /// A sample with a larger radiance counts as not finite: sums of such would soon exceed `f32`.

@@ -20,6 +20,9 @@ const AOV_CHANNELS: u64 = 32;
 /// The sums and the numbers of samples once more, as the channels of an EXR file.
 const SUMS: u64 = FILM;
 
+/// The samples that met nothing, alpha as numbers, and colours that are not multiplied by it, with their eight bits.
+const ALPHA: u64 = 4 + 4 + 12 + 4;
+
 /// What does not grow with the film: a batch of sums on the device and here, the rows in which errors are estimated, the blocks of a file.
 const FIXED: u64 = 40 << 20;
 
@@ -38,6 +41,8 @@ pub struct Demand {
     pub aovs: bool,
     /// A picture of the estimated error.
     pub errors: bool,
+    /// A picture with alpha.
+    pub alpha: bool,
 }
 
 impl Demand {
@@ -54,7 +59,8 @@ impl Demand {
             // Also what it takes to go on from one: its channels, beside the film.
             if self.sums { exr + SUMS } else { 0 },
         ];
-        FIXED + self.pixels() * (FILM + aovs + files.into_iter().max().unwrap_or(0))
+        let alpha = if self.alpha { ALPHA } else { 0 };
+        FIXED + self.pixels() * (FILM + aovs + alpha + files.into_iter().max().unwrap_or(0))
     }
 
     /// Bytes on disk of a checkpoint or a part at most: noise does not deflate.
@@ -129,6 +135,7 @@ mod tests {
         let plain = Demand { width: 100, height: 10, ..Demand::default() };
         let of = |demand: Demand| (demand.bytes() - FIXED) / 1000;
         let sums = Demand { sums: true, ..plain };
+        assert_eq!(of(Demand { alpha: true, ..plain }), 118 + ALPHA);
         assert_eq!(
             [of(plain), of(Demand { errors: true, ..plain }), of(Demand { exr: true, ..plain })],
             [118, 123, 153]

@@ -14,8 +14,10 @@ pub use brightness::{Brightness, REL_MSE};
 pub use demand::Demand;
 pub use error::{ErrorMap, INTERVAL_95};
 pub use error_estimate::{ErrorEstimate, relative_in_words};
+pub use output::HDR_HAS_NO_ALPHA;
 
 use crate::Result;
+use crate::picture::Crop;
 use crate::sampling::PARTS;
 use std::collections::BTreeMap;
 
@@ -37,6 +39,10 @@ pub struct Film {
     pub samples: Vec<u32>,
     /// How many of them were not finite and are left out, by pixel and part, where there are any.
     pub dropped: BTreeMap<(usize, usize), u32>,
+    /// Samples of each pixel whose camera ray met nothing, where the picture has alpha.
+    pub missed: Option<Vec<u32>>,
+    /// Which part of a picture the film is, if it is not the whole.
+    pub crop: Option<Crop>,
 }
 
 impl Film {
@@ -47,8 +53,16 @@ impl Film {
     pub fn new(width: u32, height: u32) -> Result<Self> {
         Film::check_size(width, height)?;
         let pixels = width as usize * height as usize;
-        let mut film =
-            Film { width, height, first_sample: 0, sums: Vec::new(), samples: Vec::new(), dropped: BTreeMap::new() };
+        let mut film = Film {
+            width,
+            height,
+            first_sample: 0,
+            sums: Vec::new(),
+            samples: Vec::new(),
+            dropped: BTreeMap::new(),
+            missed: None,
+            crop: None,
+        };
         let demand = Demand { width, height, ..Demand::default() };
         let refused = |_| demand.too_large("what the system would give".into());
         film.sums.try_reserve_exact(pixels).map_err(refused)?;
@@ -91,6 +105,9 @@ impl Film {
                     if sum.dropped > 0 {
                         *self.dropped.entry((pixel, part)).or_default() += sum.dropped;
                     }
+                    if sum.missed > 0 {
+                        self.count_misses()[pixel] += sum.missed;
+                    }
                 }
             }
         }
@@ -100,6 +117,26 @@ impl Film {
                 *samples += batch.samples.end - batch.samples.start;
             }
         }
+    }
+
+    /// Gives the picture alpha: what [`RenderSettings::transparent`](crate::scene::RenderSettings::transparent) lets a tracer count. Returns the counts of all pixels.
+    pub fn count_misses(&mut self) -> &mut Vec<u32> {
+        let pixels = self.sums.len();
+        self.missed.get_or_insert_with(|| vec![0; pixels])
+    }
+
+    /// The share of a pixel's finite samples that met something; 0 without samples, 1 in a picture without alpha.
+    pub fn alpha(&self, pixel: usize) -> f64 {
+        let Some(missed) = &self.missed else { return 1.0 };
+        // What met nothing is finite.
+        let samples: u32 = self.part_samples(pixel).iter().sum();
+        if samples == 0 { 0.0 } else { f64::from(samples.saturating_sub(missed[pixel])) / f64::from(samples) }
+    }
+
+    /// The alpha of all pixels, row by row from the top; none in a picture without it.
+    pub fn alphas(&self) -> Option<Vec<f32>> {
+        self.missed.as_ref()?;
+        Some((0..self.pixels()).map(|pixel| self.alpha(pixel) as f32).collect())
     }
 
     /// How many finite samples each part of a pixel has.
@@ -117,13 +154,17 @@ impl Film {
     /// # Panics
     /// If the sizes differ, or the other film's samples do not follow on those of every pixel.
     pub fn append(&mut self, next: &Film) {
-        assert_eq!((self.width, self.height), (next.width, next.height), "films of one size");
+        let place = |film: &Film| (film.width, film.height, film.crop);
+        assert_eq!(place(self), place(next), "films of one size and place");
         for pixel in 0..self.pixels() {
             assert_eq!(self.first_sample + self.samples[pixel], next.first_sample, "samples without a gap");
             for (sum, more) in self.sums[pixel].as_flattened_mut().iter_mut().zip(next.sums[pixel].as_flattened()) {
                 *sum += more;
             }
             self.samples[pixel] += next.samples[pixel];
+        }
+        for (pixel, missed) in next.missed.iter().flatten().enumerate() {
+            self.count_misses()[pixel] += missed;
         }
         for (place, count) in &next.dropped {
             *self.dropped.entry(*place).or_default() += count;
@@ -158,7 +199,7 @@ mod tests {
     use super::*;
 
     fn grey(v: f64) -> PixelSum {
-        PixelSum { radiance: [v; 3], rays: Rays { all: 1, shadow: 0 }, dropped: 0 }
+        PixelSum { radiance: [v; 3], rays: Rays { all: 1, shadow: 0 }, dropped: 0, missed: 0 }
     }
 
     #[test]

@@ -1,22 +1,37 @@
 //! Films to disk.
 
 use super::{Aovs, ErrorEstimate, Film};
-use crate::Result;
 use crate::files::write_file_atomically;
-use crate::picture::{Attribute, Development, Exr, Format, MARK, Values, save_linear, save_marked};
+use crate::picture::{Attribute, Development, Exr, Format, MARK, Values, save_marked, save_marked_with_alpha};
+use crate::{Error, Result};
 use std::fs::File;
 use std::path::Path;
+
+/// Why a picture with alpha is not written as HDR.
+pub const HDR_HAS_NO_ALPHA: &str = "an HDR file has no alpha: write a transparent picture as .png or .exr";
 
 impl Film {
     /// Writes the picture to `path` in the format of its ending. `how` is an exposure in stops, or a whole
     /// [`Development`], and changes a PNG only.
     ///
     /// # Errors
-    /// [`Error::Usage`](crate::Error::Usage) for an unknown ending, [`Error::Write`](crate::Error::Write) if the system refuses; then nothing has changed at `path`.
+    /// [`Error::Usage`](crate::Error::Usage) for an unknown ending, or a picture with alpha as HDR, [`Error::Write`](crate::Error::Write) if the system refuses; then nothing has changed at `path`.
     pub fn save(&self, path: &Path, how: impl Into<Development>) -> Result<()> {
         match Format::of(path)? {
             Format::Exr => self.save_exr(path, vec![], vec![], |_| Ok(())),
-            Format::Png | Format::Hdr => save_linear(path, self.width, self.height, &self.to_linear(), how),
+            _ => self.save_shown(path, how.into(), None),
+        }
+    }
+
+    /// Writes a file that holds no more than a picture.
+    fn save_shown(&self, path: &Path, how: Development, mark: Option<&str>) -> Result<()> {
+        let size = (self.width, self.height);
+        match self.alphas() {
+            Some(_) if Format::of(path)? == Format::Hdr => {
+                Err(Error::Usage(format!("{}: {HDR_HAS_NO_ALPHA}", path.display())))
+            }
+            Some(alphas) => save_marked_with_alpha(path, size, &self.to_linear(), &alphas, how, mark),
+            None => save_marked(path, size, &self.to_linear(), how, mark),
         }
     }
 
@@ -35,7 +50,7 @@ impl Film {
     /// As for [`Film::save`].
     pub fn save_marked(&self, path: &Path, how: Development, aovs: Option<&Aovs>, mark: &str) -> Result<()> {
         if Format::of(path)? != Format::Exr {
-            return save_marked(path, (self.width, self.height), &self.to_linear(), how, Some(mark));
+            return self.save_shown(path, how, Some(mark));
         }
         let more = aovs.map_or(vec![], |aovs| self.with_samples(aovs));
         self.save_exr(path, more, vec![(MARK, Attribute::Text(mark))], |_| Ok(()))
@@ -66,11 +81,11 @@ impl Film {
     }
 }
 
-/// Writes an EXR file: a film's means, their standard errors, and `more`.
+/// Writes an EXR file: a film's means, their standard errors, alpha if it has it (the means are those over black, as the format wants them), and `more`.
 fn write_exr<'a>(
     out: &mut File,
     film: &Film,
-    more: Vec<(String, Values)>,
+    mut more: Vec<(String, Values)>,
     mut attributes: Vec<(&'a str, Attribute<'a>)>,
 ) -> std::io::Result<()> {
     let (linear, errors) = (film.to_linear(), film.error_map());
@@ -83,7 +98,11 @@ fn write_exr<'a>(
     }
     let error = errors.as_ref().map(|errors| &errors.standard_error[..]);
     let rgb = bytemuck::cast_slice(&linear);
-    let exr = Exr { width: film.width, height: film.height, rgb, error, more, attributes: &attributes };
+    if let Some(alphas) = film.alphas() {
+        more.push(("A".into(), Values::Float(alphas)));
+    }
+    let exr =
+        Exr { width: film.width, height: film.height, rgb, error, more, attributes: &attributes, crop: film.crop };
     exr.write(out).map_err(std::io::Error::other)
 }
 

@@ -5,6 +5,8 @@
 
 use bytemuck::{Pod, Zeroable};
 
+/// What a sample whose camera ray met nothing adds to [`PixelSum::dropped`], in a picture with alpha: groups are shorter.
+pub const MISSED: u32 = 1 << 16;
 /// An index that is none.
 pub const NONE: u32 = u32::MAX;
 /// [`Material::impulse_probability`] where the albedos say how probable an impulse is.
@@ -67,10 +69,12 @@ macro_rules! shared {
 shared! {
     /// Sensor and estimator: constant during a render (binding 0).
     Frame {
-        /// Eye point, or a point `start` in front of it.
+        /// Eye point, or a point `start` in front of it; of parallel rays, where the one in the middle of the picture begins.
         position: [f32; 4],
-        /// Unit line of sight.
+        /// To the middle of the picture, 1 along the line of sight; of parallel rays, their direction.
         forward: [f32; 4],
+        /// Unit line of sight: `forward` but for a shift.
+        axis: [f32; 4],
         /// To the right edge of the picture: at distance 1, or of the parallel rays.
         right: [f32; 4],
         /// To the upper edge.
@@ -319,7 +323,7 @@ shared! {
         rays: u32,
         /// Shadow rays among them.
         shadow_rays: u32,
-        /// Samples that were not finite.
+        /// Samples that were not finite; with `TRANSPARENT` also [`MISSED`] for each whose camera ray met nothing.
         dropped: u32,
     }
 }

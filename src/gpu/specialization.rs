@@ -79,6 +79,8 @@ pub struct KernelModel {
     pub orthographic: bool,
     /// Where the random numbers come from.
     pub sampler: Sampler,
+    /// The camera does not see where its rays escape to, and they are counted.
+    pub transparent: bool,
 }
 
 impl KernelModel {
@@ -116,12 +118,22 @@ impl KernelModel {
             integrator: scene.integrator,
             orthographic: matches!(scene.sensor.projection, Projection::Orthographic { .. }),
             sampler: scene.settings.sampler,
+            transparent: scene.settings.transparent,
         }
     }
 
     /// Names of the specialization constants after those of [`Features::CONSTANTS`], in lower case.
-    pub const CONSTANTS: [&str; 8] =
-        ["orthographic", "sobol", "simple", "light_sampling", "solid_angle", "directions", "extinction", "threshold"];
+    pub const CONSTANTS: [&str; 9] = [
+        "orthographic",
+        "sobol",
+        "simple",
+        "light_sampling",
+        "solid_angle",
+        "directions",
+        "extinction",
+        "threshold",
+        "transparent",
+    ];
 
     /// Values of the specialization constants, by their ids.
     pub(crate) fn constants(&self) -> Vec<u32> {
@@ -137,6 +149,7 @@ impl KernelModel {
             directions_number(estimator.directions),
             extinction_number(estimator.extinction),
             u32::from(estimator.albedo_threshold.is_some()),
+            u32::from(self.transparent),
         ]);
         constants
     }
@@ -184,6 +197,9 @@ impl std::fmt::Display for KernelModel {
         }
         if self.orthographic {
             f.write_str(", orthographic")?;
+        }
+        if self.transparent {
+            f.write_str(", alpha")?;
         }
         Ok(())
     }

@@ -94,13 +94,18 @@ impl Tracer for GpuTracer {
             recorder.read_back(&bound.results, size, 0);
             recorder.read_back(&bound.extra, DROPPED_SIZE as u64, size);
         })?;
+        // Above the bits that count samples.
+        let alpha = bound.scene.model.transparent;
+        assert!(!alpha || batch.group < layout::MISSED, "groups of less than {} samples", layout::MISSED);
+        let missed = |dropped: u32| if alpha { dropped / layout::MISSED } else { 0 };
         let (sums, dropped) = bound.read(size as usize + DROPPED_SIZE)?.split_at(size as usize);
         let sums = bytemuck::cast_slice::<u8, layout::PixelSum>(sums)
             .iter()
             .map(|s| PixelSum {
                 radiance: s.radiance.map(f64::from),
                 rays: Rays { all: s.rays, shadow: s.shadow_rays },
-                dropped: s.dropped,
+                dropped: s.dropped - missed(s.dropped) * layout::MISSED,
+                missed: missed(s.dropped),
             })
             .collect();
         let dropped: &layout::Dropped = bytemuck::from_bytes(dropped);

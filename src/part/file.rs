@@ -3,7 +3,7 @@
 use super::digest::{self, BLANK, DIGEST};
 use super::provenance::Provenance;
 use crate::film::{Film, SampleId};
-use crate::picture::{self, Attribute, Values};
+use crate::picture::{self, Attribute, Crop, Values};
 use crate::render::{DROPPED_NAMED, LEAST_FOR_NOISE, Rendered, is_a_pass};
 use crate::sampling::PARTS;
 use crate::scene::Scene;
@@ -15,9 +15,11 @@ use std::path::Path;
 const PROVENANCE: &str = "luminaire.provenance";
 const COUNTS: &str = "luminaire.counts";
 
-/// The picture, its error, the number of samples, the sums in halves, what is left out.
-const MOST_CHANNELS: usize = 3 + 3 + 1 + 6 * PARTS as usize + PARTS as usize;
+/// The picture, its error, its alpha, the numbers of samples and of those that met nothing, the sums in halves, what is left out.
+const MOST_CHANNELS: usize = 3 + 3 + 1 + 2 + 6 * PARTS as usize + PARTS as usize;
 
+/// The channel of the samples that met nothing.
+const MISSED: &str = "missed";
 const HALVES: [&str; 2] = ["high", "low"];
 const CHANNELS: [&str; 3] = ["R", "G", "B"];
 
@@ -60,6 +62,9 @@ pub fn save(path: &Path, rendered: &Rendered, provenance: &Provenance) -> Result
         noise_aim: rendered.noise_aim,
     };
     let mut channels = vec![("samples".to_owned(), Values::Integer(film.samples.clone()))];
+    if let Some(missed) = &film.missed {
+        channels.push((MISSED.to_owned(), Values::Integer(missed.clone())));
+    }
     for part in 0..PARTS as usize {
         for (c, channel) in CHANNELS.into_iter().enumerate() {
             for (half, shift) in HALVES.into_iter().zip([32, 0]) {
@@ -128,11 +133,15 @@ pub fn read(path: &Path) -> Result<(Rendered, Provenance)> {
 /// Reads what is behind the head of a file.
 fn sums(path: &Path, provenance: &Provenance, counts: Counts) -> Result<Rendered> {
     let damaged = |what: &str| Error::read(path, format!("it is damaged: {what}"));
-    Film::check_size(provenance.width, provenance.height)?;
-    let size = (provenance.width, provenance.height);
+    let size = provenance.film_size();
+    if provenance.crop.is_some_and(|crop| !crop.is_inside() || crop.whole != (provenance.width, provenance.height)) {
+        return Err(damaged("its part of the picture is not in the picture"));
+    }
+    Film::check_size(size.0, size.1)?;
     let mut channels = picture::read_channels(path, MOST_CHANNELS, size).map_err(|e| Error::read(path, e))?;
     let mut rendered = Rendered::nothing(size, counts.first_sample)?;
     let film = &mut rendered.film;
+    film.crop = provenance.crop;
     let mut take = |name: &str| channels.take_integers(name);
     film.samples = take("samples").ok_or_else(|| damaged("there is no channel `samples`"))?;
     let most = film.most_samples();
@@ -165,6 +174,13 @@ fn sums(path: &Path, provenance: &Provenance, counts: Counts) -> Result<Rendered
             }
         }
     }
+    if provenance.transparent {
+        let missed = take(MISSED).ok_or_else(|| damaged("there is no channel `missed`"))?;
+        if (0..film.pixels()).any(|pixel| missed[pixel] > film.part_samples(pixel).iter().sum()) {
+            return Err(damaged("more samples met nothing than there are"));
+        }
+        film.missed = Some(missed);
+    }
     if !film.sums.as_flattened().as_flattened().iter().all(|sum| sum.is_finite()) {
         return Err(damaged("a sum is not finite"));
     }
@@ -188,8 +204,16 @@ fn sums(path: &Path, provenance: &Provenance, counts: Counts) -> Result<Rendered
 /// # Errors
 /// As [`read`], and [`Error::Read`] if it is of another render, with all differences.
 pub fn resume(path: &Path, scene: &Scene) -> Result<Rendered> {
+    resume_crop(path, scene, None)
+}
+
+/// Reads a file to go on with the render of a part of the picture of `scene`; without `crop`, of all of it.
+///
+/// # Errors
+/// As [`resume`].
+pub fn resume_crop(path: &Path, scene: &Scene, crop: Option<Crop>) -> Result<Rendered> {
     let (there, counts) = about(path)?;
-    let differences = there.differences(&Provenance::of(scene));
+    let differences = there.differences(&Provenance::of(scene).cropped(crop));
     if !differences.is_empty() {
         return Err(Error::read(
             path,

@@ -90,7 +90,7 @@ pub fn merge(paths: &[PathBuf]) -> Result<(Rendered, Provenance)> {
         next = range.end;
     }
     if let Some((provenance, _)) = &first {
-        fits((provenance.width, provenance.height), parts.len(), available())?;
+        fits(provenance.film_size(), parts.len(), available())?;
     }
     let mut whole: Option<Rendered> = None;
     for (range, path) in parts {

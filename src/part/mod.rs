@@ -11,6 +11,6 @@ mod file;
 mod merge;
 mod provenance;
 
-pub use file::{is_part, read, resume, save};
+pub use file::{is_part, read, resume, resume_crop, save};
 pub use merge::merge;
 pub use provenance::Provenance;

@@ -1,6 +1,6 @@
 //! What was rendered: all that samples depend on, so that samples of two pictures are never added up.
 
-use crate::picture::{Development, Tone};
+use crate::picture::{Crop, Development, Tone};
 use crate::scene::{
     Environment, EnvironmentImage, FilmSettings, Mesh, Object, RenderSettings, Scene, Texture, Triangle,
 };
@@ -34,6 +34,12 @@ pub struct Provenance {
     /// Tone curve of a PNG. Another one makes no difference.
     #[serde(default)]
     pub tone: Tone,
+    /// Whether the picture has alpha.
+    #[serde(default)]
+    pub transparent: bool,
+    /// Which part of the picture it is, if it is not the whole.
+    #[serde(default)]
+    pub crop: Option<Crop>,
 }
 
 impl Provenance {
@@ -51,6 +57,8 @@ impl Provenance {
             luminaires,
             environment,
             sensor,
+            // Only the one that is rendered counts.
+            cameras: _,
             film,
             integrator,
             settings,
@@ -61,7 +69,7 @@ impl Provenance {
             files: _,
         } = scene;
         let FilmSettings { width, height, filter, filter_radius } = *film;
-        let RenderSettings { spp: _, seed, exposure, tone, sampler } = *settings;
+        let RenderSettings { spp: _, seed, exposure, tone, sampler, transparent } = *settings;
         let digests = [
             ("geometry", geometry(meshes, objects)),
             (
@@ -103,7 +111,14 @@ impl Provenance {
             digests: digests.map(|(name, value)| (name.to_owned(), value)).into(),
             exposure: exposure.stops().unwrap_or(0.0),
             tone,
+            transparent,
+            crop: None,
         }
+    }
+
+    /// That of a render of a part of the picture.
+    pub fn cropped(self, crop: Option<Crop>) -> Self {
+        Provenance { crop, ..self }
     }
 
     /// How its pictures are developed, unless somebody wants it otherwise.
@@ -113,9 +128,28 @@ impl Provenance {
 
     /// A digest of all that the samples depend on, and of `more`.
     pub fn digest(&self, more: &str) -> String {
-        let Provenance { version, scene: _, width, height, seed, sampler, integrator, digests, exposure: _, tone: _ } =
-            self;
-        digest(|hash| write(hash, &(version, width, height, seed, sampler, integrator, digests, more)))
+        let Provenance {
+            version,
+            scene: _,
+            width,
+            height,
+            seed,
+            sampler,
+            integrator,
+            digests,
+            exposure: _,
+            tone: _,
+            transparent,
+            crop,
+        } = self;
+        digest(|hash| {
+            write(hash, &(version, width, height, seed, sampler, integrator, digests, transparent, crop, more))
+        })
+    }
+
+    /// Width and height of the film.
+    pub(super) fn film_size(&self) -> (u32, u32) {
+        self.crop.map_or((self.width, self.height), |crop| (crop.width, crop.height))
     }
 
     /// In what a render differs from another, of which this is the provenance; empty if their samples belong to one picture.
@@ -130,6 +164,10 @@ impl Provenance {
         compare("version", &self.version, &other.version);
         let size = |p: &Provenance| format!("{} x {}", p.width, p.height);
         compare("size", &size(self), &size(other));
+        let crop = |p: &Provenance| p.crop.map_or("all of it".into(), |crop| crop.to_string());
+        compare("crop", &crop(self), &crop(other));
+        let background = |p: &Provenance| if p.transparent { "transparent" } else { "opaque" };
+        compare("background", &background(self), &background(other));
         compare("seed", &self.seed, &other.seed);
         compare("sampler", &self.sampler, &other.sampler);
         compare("integrator", &self.integrator, &other.integrator);

@@ -28,10 +28,17 @@ pub(crate) fn save_marked(
 ) -> Result<()> {
     let format = Format::of(path)?;
     write_atomically(path, |out| match format {
-        Format::Png => write_png(out, width, height, &to_srgb8(linear, how), mark),
+        Format::Png => write_png(out, (width, height), png::ColorType::Rgb, &to_srgb8(linear, how), mark),
         Format::Exr => {
-            let exr =
-                Exr { width, height, rgb: bytemuck::cast_slice(linear), error: None, more: vec![], attributes: &[] };
+            let exr = Exr {
+                width,
+                height,
+                rgb: bytemuck::cast_slice(linear),
+                error: None,
+                more: vec![],
+                attributes: &[],
+                crop: None,
+            };
             Ok(out.write_all(&exr.encode().map_err(std::io::Error::other)?)?)
         }
         Format::Hdr => {
@@ -55,17 +62,56 @@ pub(crate) fn save_marked(
 /// # Errors
 /// [`Error::Write`](crate::Error::Write) if the system refuses; then nothing has changed at `path`.
 pub fn save_png(path: &Path, picture: &image::RgbImage) -> Result<()> {
-    write_atomically(path, |out| {
-        let (width, height) = picture.dimensions();
-        write_png(out, width, height, picture, None)
-    })
+    write_atomically(path, |out| write_png(out, picture.dimensions(), png::ColorType::Rgb, picture, None))
+}
+
+/// Writes a PNG with alpha. `linear` is linear RGB times alpha, row by row from the top, as it is added over a background; `alpha` is from 0 to 1. The file has colours
+/// that are not multiplied, as PNG wants them (straight alpha).
+///
+/// # Errors
+/// [`Error::Write`](crate::Error::Write) if the system refuses; then nothing has changed at `path`.
+pub fn save_png_with_alpha(
+    path: &Path,
+    (width, height): (u32, u32),
+    linear: &[f32],
+    alpha: &[f32],
+    how: impl Into<Development>,
+) -> Result<()> {
+    save_marked_with_alpha(path, (width, height), linear, alpha, how.into(), None)
+}
+
+/// The same, with a mark in the file's head.
+pub(crate) fn save_marked_with_alpha(
+    path: &Path,
+    (width, height): (u32, u32),
+    linear: &[f32],
+    alpha: &[f32],
+    how: Development,
+    mark: Option<&str>,
+) -> Result<()> {
+    let unmultiplied = |(rgb, alpha): (&[f32], &f32)| match *alpha {
+        0.0 => [0.0; 3],
+        alpha => [rgb[0] / alpha, rgb[1] / alpha, rgb[2] / alpha],
+    };
+    let straight: Vec<f32> = linear.chunks_exact(3).zip(alpha).flat_map(unmultiplied).collect();
+    let colours = to_srgb8(&straight, how);
+    let eight_bits = |alpha: &f32| (255.0 * alpha.clamp(0.0, 1.0)).round() as u8;
+    let rgba: Vec<u8> =
+        colours.chunks_exact(3).zip(alpha).flat_map(|(c, alpha)| [c[0], c[1], c[2], eight_bits(alpha)]).collect();
+    write_atomically(path, |out| write_png(out, (width, height), png::ColorType::Rgba, &rgba, mark))
 }
 
 /// 8 bits a channel, with the name of the program that made them, by which it knows its own files again.
-fn write_png(out: &mut dyn Write, width: u32, height: u32, rgb: &[u8], mark: Option<&str>) -> ImageResult<()> {
+fn write_png(
+    out: &mut dyn Write,
+    (width, height): (u32, u32),
+    colour: png::ColorType,
+    channels: &[u8],
+    mark: Option<&str>,
+) -> ImageResult<()> {
     let failed = |e: png::EncodingError| ImageError::IoError(e.into());
     let mut encoder = png::Encoder::new(out, width, height);
-    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_color(colour);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::Fast);
     encoder.set_filter(png::Filter::Adaptive);
@@ -74,7 +120,7 @@ fn write_png(out: &mut dyn Write, width: u32, height: u32, rgb: &[u8], mark: Opt
         encoder.add_text_chunk(MARK.into(), mark.into()).map_err(failed)?;
     }
     let mut writer = encoder.write_header().map_err(failed)?;
-    writer.write_image_data(rgb).map_err(failed)?;
+    writer.write_image_data(channels).map_err(failed)?;
     writer.finish().map_err(failed)
 }
 

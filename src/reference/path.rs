@@ -79,8 +79,11 @@ impl Reference {
         for bounce in 0.. {
             rays.all += 1;
             let Some(hit) = self.closest_hit(origin, direction, f64::INFINITY, salt(2 * bounce)) else {
-                let weight = emission_weight(estimator.light_sampling, pdf, self.environment_pdf(direction));
-                radiance += throughput * weight * self.environment_radiance(direction);
+                // Hidden from the camera itself.
+                if bounce > 0 || !settings.transparent {
+                    let weight = emission_weight(estimator.light_sampling, pdf, self.environment_pdf(direction));
+                    radiance += throughput * weight * self.environment_radiance(direction);
+                }
                 met(Vertex { hit: None, origin, direction, throughput, radiance });
                 break;
             };

@@ -1,4 +1,4 @@
-//! The camera (slide "Sensor Modelling"): pixel filter, perspective or parallel projection, pinhole or thin lens.
+//! The camera (slide "Sensor Modelling"): pixel filter, perspective or parallel projection, pinhole or thin lens, shift.
 
 use super::prepared_scene::Reference;
 use super::warp::{concentric_disk, uniform_triangle};
@@ -19,9 +19,10 @@ impl Reference {
         let (width, height) = (f64::from(film.width), f64::from(film.height));
         let x = (f64::from(pixel % film.width) + self.filter_offset(random[0])) / width;
         let y = (f64::from(pixel / film.width) + self.filter_offset(random[1])) / height;
-        let (x, y) = (2.0 * x - 1.0, 1.0 - 2.0 * y);
-
         let sensor = &self.scene.sensor;
+        let shift = sensor.shift.as_dvec2();
+        let (x, y) = (2.0 * (x + shift.x) - 1.0, 1.0 - 2.0 * (y - shift.y));
+
         let position = sensor.position.as_dvec3();
         let forward = (sensor.target.as_dvec3() - position).normalize();
         let right = forward.cross(sensor.up.as_dvec3()).normalize();

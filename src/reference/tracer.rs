@@ -33,9 +33,14 @@ impl Tracer for Reference {
             .map(|index| {
                 let (group, in_tile) = ((index / pixels) as u32, (index % pixels) as u32);
                 let pixel = (tile.y + in_tile / tile.width) * this.scene.film.width + tile.x + in_tile % tile.width;
-                let (mut sum, mut rays, mut dropped) = (DVec3::ZERO, Rays::default(), vec![]);
+                let (mut sum, mut rays, mut dropped, mut missed) = (DVec3::ZERO, Rays::default(), vec![], 0);
                 for sample in batch.group_samples(group) {
-                    let (radiance, traced) = this.radiance(pixel, sample);
+                    let mut first = this.scene.settings.transparent;
+                    let (radiance, traced) = this.follow(pixel, sample, &mut |vertex| {
+                        missed += u32::from(first && vertex.hit.is_none());
+                        first = false;
+                        true
+                    });
                     rays += traced;
                     if radiance.is_finite() && radiance.abs().max_element() < MOST_RADIANCE {
                         sum += radiance;
@@ -43,7 +48,7 @@ impl Tracer for Reference {
                         dropped.push(SampleId { pixel, sample });
                     }
                 }
-                (PixelSum { radiance: sum.to_array(), rays, dropped: dropped.len() as u32 }, dropped)
+                (PixelSum { radiance: sum.to_array(), rays, dropped: dropped.len() as u32, missed }, dropped)
             })
             .unzip();
         Ok(Traced { sums, dropped: dropped.concat(), device_seconds: None })

@@ -10,6 +10,7 @@
 
 mod aovs;
 mod budget;
+mod cropped;
 mod progress;
 mod rendered;
 mod run;
@@ -18,6 +19,7 @@ mod tracer;
 
 pub use aovs::aovs;
 pub use budget::{Budget, Pace};
+pub use cropped::Cropped;
 pub use progress::{LEAST_FOR_NOISE, Limits, MOST_WITHOUT_ESTIMATE, Progress};
 pub use rendered::{DROPPED_NAMED, End, Rendered};
 pub use run::Run;

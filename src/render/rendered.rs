@@ -3,6 +3,7 @@
 use super::progress::{LEAST_FOR_NOISE, Progress};
 use super::tracer::Traced;
 use crate::film::{Batch, Film, SampleId};
+use crate::picture::Crop;
 use crate::{Error, Result};
 
 /// How many of the samples that were not finite are remembered.
@@ -63,6 +64,16 @@ impl Rendered {
             noise_aim: LEAST_FOR_NOISE,
             end: End::Stopped,
         })
+    }
+
+    /// Nothing yet of a part of a picture.
+    ///
+    /// # Errors
+    /// If the film does not fit into memory.
+    pub fn nothing_of_crop(crop: Crop, first_sample: u32) -> Result<Self> {
+        let mut rendered = Self::nothing((crop.width, crop.height), first_sample)?;
+        rendered.film.crop = Some(crop);
+        Ok(rendered)
     }
 
     /// Takes in what a tracer did.

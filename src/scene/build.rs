@@ -4,7 +4,7 @@ use super::{
     Estimator, FilmSettings, Filter, Integrator, Luminaire, Material, Mesh, Object, Projection, RenderSettings,
     Sampler, Scene, Sensor, Triangle,
 };
-use glam::{Affine3A, DVec3, Mat3, Vec3};
+use glam::{Affine3A, DVec3, Mat3, Vec2, Vec3};
 use std::collections::HashMap;
 
 /// A scene without objects, to be filled by [`add`]: the sensor is at the origin and looks along -z, 60 degrees high; unlimited paths. The
@@ -20,6 +20,7 @@ pub fn empty(width: u32, height: u32) -> Scene {
         textures: vec![],
         environment: None,
         sensor: pinhole(Vec3::ZERO, -Vec3::Z, Vec3::Y, 60.0),
+        cameras: vec![],
         film: FilmSettings { width, height, filter: Filter::Box, filter_radius: 0.5 },
         integrator: Integrator::Path(Estimator::default()),
         settings: RenderSettings { sampler: Sampler::Independent, ..RenderSettings::default() },
@@ -32,7 +33,7 @@ pub fn empty(width: u32, height: u32) -> Scene {
 
 /// A pinhole camera; `fov` in degrees.
 pub fn pinhole(position: Vec3, target: Vec3, up: Vec3, fov: f32) -> Sensor {
-    Sensor { position, target, up, projection: Projection::Perspective { fov }, lens: None }
+    Sensor { position, target, up, projection: Projection::Perspective { fov }, lens: None, shift: Vec2::ZERO }
 }
 
 /// The path estimator of a scene, to be changed.

@@ -33,13 +33,13 @@ pub use estimator::{
 };
 pub use filter::Filter;
 pub use first_view::FirstView;
-pub use load::{Choices, SceneFile, Sky, Up, load, load_with, scene_file};
+pub use load::{Choices, SceneFile, Sky, Up, load, load_with, scene_file, use_camera};
 pub use luminaire::Luminaire;
 pub use luminaire_table::{EmissiveTriangle, LuminaireTable, SampledLuminaire};
 pub use material::{Maps, Material};
 pub use mesh::{Mesh, Object, Triangle};
 pub(crate) use mesh::{moved_box, outward, widen};
-pub use sensor::{Lens, Projection, Sensor};
+pub use sensor::{Camera, Lens, Projection, Sensor};
 pub use settings::{Exposure, FilmSettings, RenderSettings};
 pub use texture::Texture;
 pub use world::Scene;

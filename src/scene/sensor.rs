@@ -1,7 +1,7 @@
 //! The camera.
 
 use super::settings::FilmSettings;
-use glam::{DQuat, DVec3, Vec3};
+use glam::{DQuat, DVec3, Vec2, Vec3};
 use std::f64::consts::TAU;
 
 /// The camera.
@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 pub struct Sensor {
     /// Eye point.
     pub position: Vec3,
-    /// Point in the middle of the picture.
+    /// Point in the middle of the picture; with a shift, a point of the line of sight.
     pub target: Vec3,
     /// A direction that is up in the picture; not parallel to the line of sight.
     pub up: Vec3,
@@ -17,6 +17,18 @@ pub struct Sensor {
     pub projection: Projection,
     /// A thin lens; none: a pinhole, everything is in focus.
     pub lens: Option<Lens>,
+    /// What is shown lies so many widths of the picture to the right, and heights above, of what is around the line of sight: a shift lens. The camera does
+    /// not turn, so that what is parallel to the picture (the verticals of a house, looked at horizontally) stays so.
+    pub shift: Vec2,
+}
+
+/// One of the cameras of a scene, by its name.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Camera {
+    /// Its name; empty if it has none.
+    pub name: String,
+    /// What it sees, and how.
+    pub sensor: Sensor,
 }
 
 /// How directions become pixels.
@@ -121,6 +133,7 @@ mod tests {
             up,
             projection: Projection::Perspective { fov: 40.0 },
             lens: None,
+            shift: Vec2::ZERO,
         };
         // From the front, +z, a quarter of a turn goes to the right, +x; heights stay.
         let start = sensor(Vec3::new(1.0, 3.0, 5.0), Vec3::Y * 7.0);

@@ -56,6 +56,9 @@ pub struct RenderSettings {
     pub tone: Tone,
     /// Where the random numbers come from.
     pub sampler: Sampler,
+    /// The camera does not see where rays escape to, and the picture has alpha: the share of a pixel's samples that met something. The environment still lights
+    /// the scene, and is seen in mirrors and through glass, which count as opaque.
+    pub transparent: bool,
 }
 
 impl Default for RenderSettings {
@@ -66,6 +69,7 @@ impl Default for RenderSettings {
             exposure: Exposure::Stops(0.0),
             tone: Tone::default(),
             sampler: Sampler::default(),
+            transparent: false,
         }
     }
 }

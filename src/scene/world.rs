@@ -1,7 +1,8 @@
 //! `Scene`: the scene as a whole.
 
 use super::{
-    Environment, FilmSettings, Integrator, Luminaire, Material, Mesh, Object, RenderSettings, Sensor, Texture, Triangle,
+    Camera, Environment, FilmSettings, Integrator, Luminaire, Material, Mesh, Object, RenderSettings, Sensor, Texture,
+    Triangle,
 };
 use super::{moved_box, widen};
 use glam::DVec3;
@@ -31,8 +32,10 @@ pub struct Scene {
     pub luminaires: Vec<Luminaire>,
     /// Light from where rays escape to; none: escaping light disappears.
     pub environment: Option<Environment>,
-    /// The camera.
+    /// The camera that is rendered.
     pub sensor: Sensor,
+    /// Every camera that the scene file has, in its order; [`Scene::sensor`] is the first of them unless somebody chose another. Empty if it has none.
+    pub cameras: Vec<Camera>,
     /// Film size and pixel filter.
     pub film: FilmSettings,
     /// Which estimator runs.

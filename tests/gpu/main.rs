@@ -14,6 +14,7 @@ mod estimators;
 mod fallback;
 mod features;
 mod files;
+mod framing;
 mod functions;
 mod glass;
 mod intersection;

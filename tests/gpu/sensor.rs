@@ -3,7 +3,7 @@
 use super::pictures::{differing, pixels};
 use super::*;
 use crate::common::scenes::*;
-use glam::{Affine3A, DVec3, Vec3};
+use glam::{Affine3A, DVec3, Vec2, Vec3};
 use luminaire::gpu::probe::{Call, Function, Probe};
 use luminaire::reference::Reference;
 use luminaire::sampling::{Sampler, coverage, ray_salt};
@@ -47,8 +47,8 @@ fn sensor_rays_match_to_rounding() {
         (perspective, None, Filter::Box, 0.5, Sampler::Sobol),
         (perspective, Some(disk), Filter::Gaussian, 1.5, Sampler::Independent),
         (perspective, blades(3, 200.0), Filter::BlackmanHarris, 1.5, Sampler::Sobol),
-        (parallel, None, Filter::Tent, 1.0, Sampler::Independent),
-        (parallel, blades(9, -7.0), Filter::Box, 2.0, Sampler::Independent),
+        (parallel, blades(9, -7.0), Filter::Tent, 1.0, Sampler::Independent),
+        (parallel, None, Filter::Box, 2.0, Sampler::Independent),
     ];
     let calls: Vec<Call> = (0..width * height * 4)
         .map(|i| {
@@ -56,10 +56,12 @@ fn sensor_rays_match_to_rounding() {
             [[pixel % width, pixel / width, pixel, i % 4], [0; 4]]
         })
         .collect();
-    for (projection, lens, filter, radius, sampler) in cases {
+    // Every other one is shifted.
+    let shifts = [Vec2::ZERO, Vec2::new(0.5, -1.25)].into_iter().cycle();
+    for ((projection, lens, filter, radius, sampler), shift) in cases.into_iter().zip(shifts) {
         let mut scene = cornell_like(width, height);
         scene.sensor = pinhole(Vec3::new(1.0, 0.5, 1.5), Vec3::new(-0.5, 0.0, -1.0), Vec3::Y, 60.0);
-        (scene.sensor.projection, scene.sensor.lens) = (projection, lens);
+        (scene.sensor.projection, scene.sensor.lens, scene.sensor.shift) = (projection, lens, shift);
         (scene.film.filter, scene.film.filter_radius) = (filter, radius);
         scene.settings.sampler = sampler;
         let reference = Reference::new(&scene);
@@ -70,7 +72,7 @@ fn sensor_rays_match_to_rounding() {
                 let [origin, direction] =
                     result.map(|r| DVec3::from([0, 1, 2].map(|k| f64::from(f32::from_bits(r[k])))));
                 let (o, d) = reference.sensor_ray(call[0][2], call[0][3]);
-                let what = || format!("{projection:?}, {lens:?}, {filter:?}, {call:?}");
+                let what = || format!("{projection:?}, {lens:?}, {shift}, {filter:?}, {call:?}");
                 assert!((origin - o).abs().max_element() < 1e-6, "{}: origin {origin}, {o}", what());
                 assert!((direction - d).abs().max_element() < 1e-6, "{}: direction {direction}, {d}", what());
             }
@@ -80,7 +82,7 @@ fn sensor_rays_match_to_rounding() {
 
 /// A chequered sheet of a quarter each way, of 64 x 64 fields; seen from `distance`, aslant, so that it fills the picture: what a lens of 0.05
 /// degrees sees of it from 707 units.
-fn distant_sheet(distance: f32, parallel: bool, lens: Option<f32>) -> Scene {
+pub fn distant_sheet(distance: f32, parallel: bool, lens: Option<f32>) -> Scene {
     let mut scene = empty(64, 64);
     let position = Vec3::new(0.0, 1.0, 1.0).normalize() * distance;
     let height = 0.617;
@@ -113,10 +115,16 @@ fn distant_sheet(distance: f32, parallel: bool, lens: Option<f32>) -> Scene {
 /// sample by sample. Cameras near by start where they did.
 #[test]
 fn distant_cameras_see_what_the_reference_sees() {
-    for (distance, parallel, lens) in
-        [(707.0, false, None), (7e5, false, None), (7e5, true, None), (7e4, false, Some(0.1)), (7e6, true, Some(0.01))]
-    {
-        let scene = distant_sheet(distance, parallel, lens);
+    let centred = Vec2::ZERO;
+    for (distance, parallel, lens, shift) in [
+        (707.0, false, None, centred),
+        (7e5, false, None, Vec2::new(0.25, -0.125)),
+        (7e5, true, None, centred),
+        (7e4, false, Some(0.1), centred),
+        (7e6, true, Some(0.01), Vec2::new(-0.25, 0.125)),
+    ] {
+        let mut scene = distant_sheet(distance, parallel, lens);
+        scene.sensor.shift = shift;
         let bounds = scene.world_bounds();
         let start = scene.sensor.start(&scene.film, bounds);
         assert_eq!(start > 0.0, distance > 1000.0, "{distance}: {start}");
@@ -153,7 +161,8 @@ fn distant_cameras_see_what_the_reference_sees() {
 fn depths_of_a_distant_camera() {
     use luminaire::film::Tile;
     use luminaire::render::Tracer;
-    let scene = distant_sheet(7e5, false, None);
+    let mut scene = distant_sheet(7e5, false, None);
+    scene.sensor.shift = Vec2::new(0.125, 0.25);
     let tile = Tile { x: 0, y: 0, width: 64, height: 64 };
     let expected = Reference::new(&scene).aovs(tile, 0..1).expect("first hits");
     on_every_backend(|backend| {

@@ -28,6 +28,7 @@ fn ground_far_from_the_model_cannot_be_told_from_the_sky() {
             up: Vec3::Y,
             projection: Projection::Perspective { fov: 20.0 },
             lens: None,
+            shift: glam::Vec2::ZERO,
         };
     };
     let mut ground = scene("[environment]\nsky = \"studio\"\n[ground]");

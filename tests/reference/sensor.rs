@@ -2,7 +2,7 @@
 
 use crate::common::scenes::*;
 use crate::common::statistics::*;
-use glam::{Affine3A, DVec2, DVec3, Vec3};
+use glam::{Affine3A, DVec2, DVec3, Vec2, Vec3};
 use luminaire::reference::Reference;
 use luminaire::reference::sensor::lens_point;
 use luminaire::sampling::{PARTS, SENSOR_BLOCK, Sampler, random4, uniform};
@@ -239,10 +239,11 @@ fn with_lens(projection: Projection, lens: Option<Lens>) -> (Scene, [DVec3; 3]) 
 #[test]
 fn rays_of_a_film_point_meet_in_the_plane_of_focus() {
     for projection in [Projection::Perspective { fov: 40.0 }, Projection::Orthographic { height: 3.0 }] {
-        for blades in [0, 5] {
+        for (blades, shift) in [(0, Vec2::ZERO), (5, Vec2::ZERO), (5, Vec2::new(0.75, -1.5))] {
             let lens = Lens { radius: 0.3, focus_distance: 5.0, blades, rotation: 20.0 };
-            let (scene, [right, up, forward]) = with_lens(projection, Some(lens));
-            let (sharp, _) = with_lens(projection, None);
+            let (mut scene, [right, up, forward]) = with_lens(projection, Some(lens));
+            let (mut sharp, _) = with_lens(projection, None);
+            (scene.sensor.shift, sharp.sensor.shift) = (shift, shift);
             let (through, pinhole) = (Reference::brute_force(&scene), Reference::brute_force(&sharp));
             let position = scene.sensor.position.as_dvec3();
             for pixel in 0..128 {
@@ -302,6 +303,23 @@ fn circle_of_confusion() {
         }
         let expected = f64::from(radius) * (d - f).abs() / f;
         assert!((0.99..1.0 + 1e-12).contains(&(largest / expected)), "{largest} {expected}");
+    }
+}
+
+/// A shift of one height upwards shows what is above the picture, and is no turn: a vertical line stays vertical.
+#[test]
+fn a_shift_moves_the_picture_and_turns_nothing() {
+    let mut scene = scene(8, 8);
+    scene.film.filter_radius = 1e-6;
+    scene.sensor = pinhole(Vec3::ZERO, -Vec3::Z, Vec3::Y, 90.0);
+    scene.sensor.shift = Vec2::new(0.5, 1.0);
+    let tracer = Reference::brute_force(&scene);
+    for pixel in 0..64 {
+        let (o, d) = tracer.sensor_ray(pixel, 0);
+        let (column, row) = (f64::from(pixel % 8) + 0.5, f64::from(pixel / 8) + 0.5);
+        // The picture at distance 1 is 2 wide and high: from 0 to 2 to the right, from 1 to 3 above.
+        let expected = DVec3::new(column / 4.0, 3.0 - row / 4.0, -1.0);
+        assert!(o == DVec3::ZERO && (d / -d.z).distance(expected) < 1e-5, "{pixel}: {d}");
     }
 }
 

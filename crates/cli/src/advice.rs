@@ -44,8 +44,21 @@ const OPTIONS: &[(&[&str], &str)] = &[
     (&["out", "file", "outfile", "output-file", "save", "image"], "the picture is named with -o FILE.png"),
     (&["output-dir", "outdir", "folder", "dir"], "-o FOLDER/FILE.png names the folder, too"),
     (
-        &["camera", "fov", "lookat", "look-at", "eye", "position", "target", "view"],
-        "the camera is the table [sensor] of the scene file; `luminaire view` writes it with the key C",
+        &[
+            "camera",
+            "cam",
+            "sensor",
+            "fov",
+            "lookat",
+            "look-at",
+            "eye",
+            "position",
+            "target",
+            "view",
+            "viewpoint",
+            "shift",
+        ],
+        "the camera is the table [sensor] of the scene file, or --camera FILE.toml, which `luminaire view` writes with the key C; --camera NAME takes one of several",
     ),
     (
         &["env", "environment", "envmap", "background", "hdri", "sky", "light", "lights"],
@@ -67,7 +80,14 @@ const OPTIONS: &[(&[&str], &str)] = &[
         &["frame", "frames", "animation", "a", "start", "end", "turn", "orbit", "spin", "rotate", "fps"],
         "a turn around the scene is --turntable N, of which --frames A..B is a part; for any other animation a scene is one picture of it",
     ),
-    (&["crop", "region", "border", "window"], "the whole film is rendered; a part of the samples is --samples A..B"),
+    (
+        &["crop", "region", "border", "window", "crop-window", "cropwindow", "roi", "tile"],
+        "a part of the picture is --crop X,Y,W,H of `luminaire render`, in pixels; a part of the samples is --samples A..B",
+    ),
+    (
+        &["transparent", "alpha", "rgba", "film-transparent", "transparency", "no-background", "hide-emitters"],
+        "a transparent background is --transparent of `luminaire render`",
+    ),
     (
         &["aovs", "passes", "layers", "albedo", "normals", "depth-map"],
         "layers for denoisers and compositing are --aov, in an EXR file",

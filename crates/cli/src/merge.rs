@@ -4,8 +4,9 @@ use crate::shared::error_line::{black_picture, error_line};
 use crate::shared::outputs::Outputs;
 use crate::shared::printing::{print, warn};
 use crate::shared::tone_name::{ToneName, stops_alone};
+use luminaire::film::HDR_HAS_NO_ALPHA;
 use luminaire::picture::Development;
-use luminaire::{Result, part, picture};
+use luminaire::{Error, Result, part, picture};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -52,6 +53,12 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     }
     outputs.check(options.parts.iter().map(|part| ("one of the parts", &**part)))?;
     let (whole, provenance) = part::merge(&options.parts)?;
+    if whole.film.missed.is_some()
+        && let Some(path) =
+            options.output.iter().find(|path| matches!(picture::Format::of(path), Ok(picture::Format::Hdr)))
+    {
+        return Err(Error::Usage(format!("{}: {HDR_HAS_NO_ALPHA}", path.display())));
+    }
     let of_the_parts = provenance.development();
     let development = Development {
         exposure: options.exposure.unwrap_or(of_the_parts.exposure),

@@ -1,11 +1,12 @@
 //! `luminaire view`.
 
 use crate::shared::backend_name::{self, BackendName};
+use crate::shared::camera::CameraOption;
 use crate::shared::counts::{pixels, samples, seed};
 use crate::shared::estimator::EstimatorOptions;
 use crate::shared::film_size::FilmSize;
 use crate::shared::foreseen::foresee;
-use crate::shared::printing::{note, warn};
+use crate::shared::printing::{Notes, note, warn};
 use crate::shared::scene_options::SceneOptions;
 use crate::shared::tone_name::{ToneName, exposure};
 use luminaire::Result;
@@ -24,6 +25,8 @@ Examples:
       as bright as its surfaces want it, and with soft highlights; X finds the exposure anew, T changes the curve
   luminaire view scenes/cornell/cornell.toml --spp 256
       the picture stops at 256 samples a pixel; C prints the camera, and writes it to cornell-camera-1.toml
+  luminaire view scenes/cornell/cornell.toml --camera cornell-camera-1.toml
+      begins with the camera, and the exposure, that C wrote; `luminaire render` takes it, too
 
 Files go to the current folder: <SCENE>-view-1.png, -2, ...; none is ever replaced.";
 
@@ -42,6 +45,9 @@ const LARGEST_SIDE: u32 = 16384;
 pub struct Options {
     /// A scene file (.toml) or any OBJ file.
     scene: PathBuf,
+
+    #[command(flatten)]
+    camera: CameraOption,
 
     /// Width of the window in pixels [default: the scene's, or from --height at the scene's aspect ratio].
     #[arg(long, value_name = "PIXELS", allow_negative_numbers = true, value_parser = pixels::<16, LARGEST_SIDE>, help_heading = "Window")]
@@ -86,6 +92,7 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     let request = backend_name::request(options.backend, options.device.as_deref())?;
     options.estimator.check()?;
     let mut scene = options.of_scene.load(&options.scene)?;
+    options.camera.choose(&mut scene, Notes { quiet: false })?;
     let own_film = scene.film;
     FilmSize { width: options.width, height: options.height, largest: LARGEST_SIDE }.apply(&mut scene.film);
     Film::check_size(scene.film.width, scene.film.height)?;

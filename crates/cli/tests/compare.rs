@@ -26,7 +26,7 @@ impl Folder {
     }
 
     fn exr(&self, name: &str, rgb: &[[f32; 3]], error: Option<&[[f32; 3]]>) {
-        let exr = Exr { width: rgb.len() as u32 / 4, height: 4, rgb, error, more: vec![], attributes: &[] };
+        let exr = Exr { width: rgb.len() as u32 / 4, height: 4, rgb, error, more: vec![], attributes: &[], crop: None };
         std::fs::write(self.path().join(name), exr.encode().unwrap()).unwrap();
     }
 

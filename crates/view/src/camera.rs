@@ -100,16 +100,25 @@ pub fn fly(sensor: &Sensor, by: DVec3) -> Sensor {
 /// Brings all of a ball into a picture of `aspect` (width over height), without turning.
 pub fn frame(sensor: &Sensor, ball: Ball, aspect: f64) -> Sensor {
     let Ball { center, radius } = ball;
-    let forward = Axes::of(sensor).forward;
+    let Axes { forward, right, up, .. } = Axes::of(sensor);
+    let shift = sensor.shift.as_dvec2();
     match sensor.projection {
         Projection::Perspective { fov } => {
-            let half_height = f64::from(fov).to_radians() / 2.0;
-            let half_width = (half_height.tan() * aspect).atan();
-            placed(sensor, center - forward * (radius / half_height.min(half_width).sin()), center)
+            let half_height = (f64::from(fov).to_radians() / 2.0).tan();
+            let half = DVec2::new(half_height * aspect, half_height);
+            // What the middle of the picture shows at distance 1, from the line of sight.
+            let middle = 2.0 * shift * half;
+            // As far as the ball touches one of the four planes through the eye point and an edge of the picture.
+            let edge = middle.abs() + half;
+            let distance = radius * ((DVec2::ONE + edge * edge).powf(0.5) / half).max_element();
+            let target = center - distance * (right * middle.x + up * middle.y);
+            placed(sensor, target - forward * distance, target)
         }
         Projection::Orthographic { .. } => {
-            let mut framed = placed(sensor, center - forward * 2.0 * radius, center);
-            framed.projection = Projection::Orthographic { height: (2.0 * radius / aspect.min(1.0)) as f32 };
+            let height = 2.0 * radius / aspect.min(1.0);
+            let target = center - height * (right * shift.x * aspect + up * shift.y);
+            let mut framed = placed(sensor, target - forward * 2.0 * radius, target);
+            framed.projection = Projection::Orthographic { height: height as f32 };
             framed
         }
     }
@@ -118,7 +127,7 @@ pub fn frame(sensor: &Sensor, ball: Ball, aspect: f64) -> Sensor {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::Vec3;
+    use glam::{Vec2, Vec3};
     use luminaire::scene::load;
 
     fn sensor() -> Sensor {
@@ -128,6 +137,7 @@ mod tests {
             up: Vec3::Y,
             projection: Projection::Perspective { fov: 90.0 },
             lens: None,
+            shift: Vec2::ZERO,
         }
     }
 
@@ -183,8 +193,11 @@ mod tests {
         std::fs::write(&path, "v 10 0 0\nv 11 0 0\nv 10 1 0\nf 1 2 3\n").unwrap();
         let scene = load(&path).unwrap();
         for aspect in [0.5, 2.0] {
-            for projection in [Projection::Perspective { fov: 30.0 }, Projection::Orthographic { height: 1.0 }] {
-                let framed = frame(&Sensor { projection, ..sensor() }, Ball::around(&scene), aspect);
+            let projections = [Projection::Perspective { fov: 30.0 }, Projection::Orthographic { height: 1.0 }];
+            let shifts = [Vec2::ZERO, Vec2::new(0.5, -2.0), Vec2::new(-0.25, 0.0)];
+            for (projection, shift) in projections.into_iter().flat_map(|p| shifts.map(|shift| (p, shift))) {
+                let framed = frame(&Sensor { projection, shift, ..sensor() }, Ball::around(&scene), aspect);
+                let shift = 2.0 * shift.as_dvec2();
                 let axes = Axes::of(&framed);
                 for point in [DVec3::new(10.0, 0.0, 0.0), DVec3::new(11.0, 0.0, 0.0), DVec3::new(10.0, 1.0, 0.0)] {
                     let to = point - framed.position.as_dvec3();
@@ -195,7 +208,8 @@ mod tests {
                         Projection::Orthographic { height } => f64::from(height) / 2.0,
                     };
                     assert!(
-                        to.dot(axes.up).abs() <= half * 1.0001 && to.dot(axes.right).abs() <= half * aspect * 1.0001
+                        (to.dot(axes.up) - shift.y * half).abs() <= half * 1.0001
+                            && (to.dot(axes.right) - shift.x * half * aspect).abs() <= half * aspect * 1.0001
                     );
                 }
             }

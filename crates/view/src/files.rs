@@ -8,13 +8,14 @@ use super::wanted::{Saved, Wanted};
 use glam::DVec3;
 use luminaire::files::{save_numbered, save_text};
 use luminaire::film::Film;
+use luminaire::picture::Development;
 use luminaire::scene::Sensor;
 use luminaire::{Result, picture};
 use std::path::{Path, PathBuf};
 
-/// Writes a camera of a scene with this origin to a file whose name begins with `stem`. The news are its text, and the file's name or why it was not written.
-pub fn save_camera(stem: &str, sensor: &Sensor, origin: DVec3) -> [News; 2] {
-    let text = to_toml(sensor, origin);
+/// Writes a camera of a scene with this origin, and how its pictures are shown, to a file whose name begins with `stem`. The news are its text, and the file's name or why it was not written.
+pub fn save_camera(stem: &str, sensor: &Sensor, origin: DVec3, how: Development) -> [News; 2] {
+    let text = to_toml(sensor, origin, how);
     let saved = save_numbered(names(Path::new(""), stem, "camera", "toml"), |path| save_text(path, &text));
     [News::Done(text), written(saved)]
 }

@@ -140,7 +140,7 @@ pub fn wheel(delta: MouseScrollDelta, sensor: &Sensor) -> Sensor {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::Vec3;
+    use glam::{Vec2, Vec3};
 
     #[test]
     fn only_a_held_button_or_key_moves_the_camera() {
@@ -150,6 +150,7 @@ mod tests {
             up: Vec3::Y,
             projection: Projection::Perspective { fov: 90.0 },
             lens: None,
+            shift: Vec2::ZERO,
         };
         let mut input = Input::default();
         let at = |x| PhysicalPosition::new(x, 0.0);

@@ -1,10 +1,12 @@
-//! Writes a camera as the `[sensor]` table of a scene file.
+//! Writes a camera as the `[sensor]` table of a scene file, and how its pictures are shown.
 
 use glam::DVec3;
+use luminaire::picture::Development;
 use luminaire::scene::{Projection, Sensor};
 
-/// The table of a sensor of a scene with this origin, in the coordinates of the files; read back, it is the same to the last bit.
-pub fn to_toml(sensor: &Sensor, origin: DVec3) -> String {
+/// The table of a sensor of a scene with this origin, in the coordinates of the files, and that of exposure and tone curve; read back, they are the same to the
+/// last bit.
+pub fn to_toml(sensor: &Sensor, origin: DVec3, how: Development) -> String {
     // `{:?}` writes the fewest digits that are read back as the same number.
     let vector = |v: glam::Vec3| format!("[{:?}, {:?}, {:?}]", v.x, v.y, v.z);
     let point = |v: glam::Vec3| {
@@ -30,14 +32,18 @@ pub fn to_toml(sensor: &Sensor, origin: DVec3) -> String {
             text += &format!("blades = {}\nblade_rotation = {:?}\n", lens.blades, lens.rotation);
         }
     }
-    text
+    if sensor.shift != glam::Vec2::ZERO {
+        text += &format!("shift = [{:?}, {:?}]\n", sensor.shift.x, sensor.shift.y);
+    }
+    let Development { exposure, tone } = how;
+    text + &format!("[render]\nexposure = {exposure:?}\ntone = \"{}\"\n", tone.name())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::Vec3;
-    use luminaire::scene::{Lens, load};
+    use glam::{Vec2, Vec3};
+    use luminaire::scene::{Exposure, Lens, Tone, load};
 
     #[test]
     fn a_written_camera_is_read_back_to_the_last_bit() {
@@ -51,16 +57,25 @@ mod tests {
             up: Vec3::Y,
             projection: Projection::Perspective { fov: 90.0 },
             lens: None,
+            shift: Vec2::ZERO,
         };
         for sensor in [
             moved.clone(),
             Sensor { lens: Some(lens), ..moved.clone() },
             Sensor { lens: Some(Lens { blades: 0, rotation: 0.0, ..lens }), ..moved.clone() },
-            Sensor { projection: Projection::Orthographic { height: 1e-7 / 3.0 }, ..moved },
+            Sensor { projection: Projection::Orthographic { height: 1e-7 / 3.0 }, ..moved.clone() },
+            Sensor { shift: Vec2::new(-1.0 / 3.0, 0.123_456_79), ..moved },
         ] {
             let path = folder.path().join("a.toml");
-            std::fs::write(&path, to_toml(&sensor, DVec3::ZERO) + "[[object]]\nmesh = \"a.obj\"\n").unwrap();
-            assert_eq!(load(&path).unwrap().sensor, sensor);
+            std::fs::write(
+                &path,
+                to_toml(&sensor, DVec3::ZERO, Development { exposure: -0.1, tone: Tone::Agx })
+                    + "[[object]]\nmesh = \"a.obj\"\n",
+            )
+            .unwrap();
+            let scene = load(&path).unwrap();
+            assert_eq!((scene.sensor, scene.settings.exposure), (sensor, Exposure::Stops(-0.1)));
+            assert_eq!(scene.settings.tone, Tone::Agx);
         }
     }
 
@@ -77,7 +92,7 @@ mod tests {
         std::fs::write(&path, format!("{sensor}{object}")).unwrap();
         let scene = load(&path).unwrap();
         assert!(scene.origin.y > 5e6 && scene.sensor.position.length() < 20.0, "{:?}", scene.sensor);
-        std::fs::write(&path, to_toml(&scene.sensor, scene.origin) + object).unwrap();
+        std::fs::write(&path, to_toml(&scene.sensor, scene.origin, 0.0.into()) + object).unwrap();
         assert_eq!(load(&path).unwrap().sensor, scene.sensor);
     }
 }

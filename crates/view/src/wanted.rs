@@ -30,7 +30,7 @@ pub enum Order {
     Expose,
     /// Save a picture.
     Save(Saved),
-    /// Write the camera to a file, as a scene file's `[sensor]` table.
+    /// Write the camera, exposure and tone to a file, as a scene file's `[sensor]` and `[render]`.
     SaveCamera,
     /// End the thread.
     Quit,

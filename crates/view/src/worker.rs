@@ -135,7 +135,7 @@ impl Worker {
                     Order::NextEstimator => self.next_estimator()?,
                     Order::Expose => self.expose(&wanted),
                     Order::SaveCamera => {
-                        let news = save_camera(&self.stem, &wanted.sight.sensor, self.scene.origin);
+                        let news = save_camera(&self.stem, &wanted.sight.sensor, self.scene.origin, wanted.development);
                         news.into_iter().for_each(&self.send);
                     }
                     Order::Save(saved) => saves.push(saved),

@@ -39,7 +39,7 @@ pub(in crate::gpu) fn estimate(frame: &mut layout::Frame, integrator: &Integrato
 
 /// Puts the camera and the film into a frame, for a scene of these bounds.
 pub(in crate::gpu) fn aim(frame: &mut layout::Frame, sensor: &Sensor, film: &FilmSettings, bounds: (DVec3, DVec3)) {
-    let Sensor { position, target, up, projection, lens } = *sensor;
+    let Sensor { position, target, up, projection, lens, shift } = *sensor;
     // In f64 like the reference: these are rounded once.
     let forward = (target.as_dvec3() - position.as_dvec3()).normalize();
     let right = forward.cross(up.as_dvec3()).normalize();
@@ -50,11 +50,19 @@ pub(in crate::gpu) fn aim(frame: &mut layout::Frame, sensor: &Sensor, film: &Fil
         Projection::Orthographic { height } => f64::from(height) / 2.0,
     };
     let start = sensor.start(film, bounds);
-    frame.position = vec4((position.as_dvec3() + start * forward).as_vec3());
+    let (to_right, to_top) = (right * half * aspect, true_up * half);
+    // To the middle of the picture, from that of the unshifted one.
+    let shift = 2.0 * (f64::from(shift.x) * to_right + f64::from(shift.y) * to_top);
+    let (begin, middle) = match projection {
+        Projection::Perspective { .. } => (start * (forward + shift), forward + shift),
+        Projection::Orthographic { .. } => (start * forward + shift, forward),
+    };
+    frame.position = vec4((position.as_dvec3() + begin).as_vec3());
     frame.start = start as f32;
-    frame.forward = vec4(forward.as_vec3());
-    frame.right = vec4((right * half * aspect).as_vec3());
-    frame.up = vec4((true_up * half).as_vec3());
+    frame.forward = vec4(middle.as_vec3());
+    frame.axis = vec4(forward.as_vec3());
+    frame.right = vec4(to_right.as_vec3());
+    frame.up = vec4(to_top.as_vec3());
     (frame.lens_radius, frame.focus_distance) = lens.map_or((0.0, 1.0), |lens| (lens.radius, lens.focus_distance));
     frame.lens_at_start = lens.map_or(1.0, |lens| (1.0 - start / f64::from(lens.focus_distance)) as f32);
     frame.lens_blades = lens.map_or(0.0, |lens| lens.blades as f32);

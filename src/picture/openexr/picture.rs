@@ -13,6 +13,10 @@ use ::exr::prelude::{ReadChannels, ReadLayers, ReadSpecificChannel, read};
 use glam::{DMat3, DVec2, DVec3};
 use std::path::Path;
 
+/// What is to be done with a crop.
+const WHAT_TO_DO: &str =
+    "write the whole picture, or the crop as a picture of its own (data window and display window the same)";
+
 /// A file of which the head was read.
 #[derive(Debug)]
 pub(in crate::picture) struct Opened<'a> {
@@ -69,27 +73,27 @@ impl<'a> Opened<'a> {
 
     /// A warning if not all of the pixels that are shown are stored.
     pub(in crate::picture) fn cropped(&self) -> Option<String> {
-        self.window.check_whole().err().map(|why| format!("{why}; 0 is used outside"))
+        self.window.check_whole().err().map(|why| format!("{why}; {WHAT_TO_DO}; 0 is used outside"))
     }
 
     /// The picture, in sRGB's primaries. Integers are taken as the numbers they are, luminance alone as grey; alpha is left out, since colours are stored as
     /// they are over black.
     ///
     /// # Errors
-    /// In words that can follow the file's name; a crop is one, since what is outside is not known.
+    /// In words that can follow the file's name; pixels that are shown and not stored are one, but where the file holds a crop, which is a picture of its own.
     pub(in crate::picture) fn picture(&self) -> Result<Picture, String> {
-        let (width, height) = self.size();
+        let mut warnings = self.warnings.clone();
+        let window = self.window.pixels(&mut warnings)?;
+        let (width, height) = (window.width as u32, window.height as u32);
         let sizes = [(width as usize, height as usize), self.window.stored].map(|(w, h)| (w as u64, h as u64));
         if let Some((width, height)) = sizes.into_iter().find(|(w, h)| w.saturating_mul(*h) > MOST_PIXELS) {
             return Err(too_large(width, height));
         }
-        self.window.check_whole()?;
         // Three floats a pixel, and three of its error.
         let numbers = if self.choice.error.is_some() { 6 } else { 3 };
         fits((width, height), 4 * numbers * u64::from(width) * u64::from(height), available())?;
-        let colours = |names: &[String; 3]| self.read(names, None, |[r, g, b, _]| [r, g, b]);
+        let colours = |names: &[String; 3]| self.read(window, names, None, |[r, g, b, _]| [r, g, b]);
         let (mut rgb, mut error) = (colours(&self.choice.rgb)?, self.choice.error.as_ref().map(colours).transpose()?);
-        let mut warnings = self.warnings.clone();
         if let Some(matrix) = self.matrix {
             // A grey is a grey.
             rgb.iter_mut().filter(|rgb| **rgb != [rgb[0]; 3]).for_each(|rgb| {
@@ -107,13 +111,14 @@ impl<'a> Opened<'a> {
     /// # Errors
     /// In words that can follow the file's name.
     pub(in crate::picture) fn rgba(&self) -> Result<Vec<f32>, String> {
-        Ok(self.read(&self.choice.rgb, self.choice.alpha.as_deref(), |rgba| rgba)?.into_flattened())
+        Ok(self.read(self.window, &self.choice.rgb, self.choice.alpha.as_deref(), |rgba| rgba)?.into_flattened())
     }
 
-    /// What `pixel` makes of red, green, blue and alpha of every pixel that is shown; no other channel and no other part takes memory. Outside of a crop all are 0,
+    /// What `pixel` makes of red, green, blue and alpha of every pixel in a window; no other channel and no other part takes memory. Outside of a crop all are 0,
     /// and so is alpha in a file that has it.
     fn read<T: Copy + 'static>(
         &self,
+        window: Window,
         names: &[String; 3],
         alpha: Option<&str>,
         pixel: fn([f32; 4]) -> T,
@@ -122,7 +127,6 @@ impl<'a> Opened<'a> {
         if std::fs::metadata(self.path).is_ok_and(|about| about.len() < 16 * self.chunks) {
             return Err("it is truncated: its table of blocks is longer than the file".into());
         }
-        let window = self.window;
         let outside = pixel([0.0, 0.0, 0.0, if alpha.is_some() { 0.0 } else { 1.0 }]);
         let [r, g, b] = names.each_ref().map(|name| &name[..]);
         let empty = move || vec![outside; window.width * window.height];
@@ -198,14 +202,25 @@ impl Window {
         Ok(Window { width, height, stored: (size.width(), size.height()), left, top })
     }
 
+    /// The pixels of the picture: what is shown; or what is stored, where that is a part of it, which is a warning.
+    fn pixels(self, warnings: &mut Vec<String>) -> Result<Self, String> {
+        let Err(crop) = self.check_whole() else { return Ok(self) };
+        let inside = |offset: i64, shown: usize, stored: usize| offset <= 0 && stored as i64 - offset <= shown as i64;
+        let Window { width, height, stored, left, top } = self;
+        if !inside(left, width, stored.0) || !inside(top, height, stored.1) {
+            return Err(format!("{crop}; {WHAT_TO_DO}"));
+        }
+        warnings.push(format!("{crop}, and taken as a picture of its own"));
+        Ok(Window { width: stored.0, height: stored.1, stored, left: 0, top: 0 })
+    }
+
     /// Refuses a crop.
     fn check_whole(&self) -> Result<(), String> {
         let Window { width, height, stored, left, top } = self;
         let beyond = |offset: i64, shown: usize, stored: usize| offset + shown as i64 > stored as i64;
         if *left < 0 || *top < 0 || beyond(*left, *width, stored.0) || beyond(*top, *height, stored.1) {
             return Err(format!(
-                "it is a crop: the file holds {} x {} pixels at {} {} of a picture of {width} x {height}; write the whole picture, or \
-                 the crop as a picture of its own (data window and display window the same)",
+                "it is a crop: the file holds {} x {} pixels at {} {} of a picture of {width} x {height}",
                 stored.0, stored.1, -left, -top
             ));
         }

@@ -51,7 +51,15 @@ fn plain(parts: Vec<Part>) -> Vec<u8> {
 fn what_is_written_is_read() {
     let error: Vec<_> = (0..6).map(|i| [0.5, i as f32, f32::MIN_POSITIVE]).collect();
     let attributes = [("samples", Attribute::Number(64.0)), ("scene", Attribute::Text("b\u{e9} \u{4e16}"))];
-    let exr = Exr { width: 3, height: 2, rgb: &rgb(), error: Some(&error), more: vec![], attributes: &attributes };
+    let exr = Exr {
+        width: 3,
+        height: 2,
+        rgb: &rgb(),
+        error: Some(&error),
+        more: vec![],
+        attributes: &attributes,
+        crop: None,
+    };
     let bytes = exr.clone().encode().unwrap();
     let picture = opened(&bytes).unwrap();
     assert_eq!((picture.width, picture.height, picture.clamped), (3, 2, false));
@@ -68,14 +76,16 @@ fn what_is_written_is_read() {
     let plain = Exr { error: None, attributes: &[], ..exr.clone() };
     assert_eq!(opened(&plain.encode().unwrap()).unwrap().error, None);
     assert!(Exr { width: 2, ..exr.clone() }.encode().is_err());
-    assert!(Exr { width: 0, height: 0, rgb: &[], error: None, more: vec![], attributes: &[] }.encode().is_err());
+    assert!(
+        Exr { width: 0, height: 0, rgb: &[], error: None, more: vec![], attributes: &[], crop: None }.encode().is_err()
+    );
 }
 
 #[test]
 fn one_picture_has_one_file() {
     let names: Vec<String> = (0..20).map(|i| format!("number {i}")).collect();
     let attributes: Vec<_> = names.iter().map(|name| (&**name, Attribute::Number(1.0))).collect();
-    let exr = Exr { width: 3, height: 2, rgb: &rgb(), error: None, more: vec![], attributes: &attributes };
+    let exr = Exr { width: 3, height: 2, rgb: &rgb(), error: None, more: vec![], attributes: &attributes, crop: None };
     let bytes = exr.clone().encode().unwrap();
     assert!((0..10).all(|_| exr.clone().encode().unwrap() == bytes));
 }
@@ -147,14 +157,35 @@ fn windows() {
     // More is stored than is shown: the right one of the lower row is left over.
     let inner = at(-2, -1, (0, 0, 1, 1)).unwrap();
     assert_eq!((inner.width, inner.height, &inner.rgb[..]), (1, 1, &[[5.0; 3]][..]));
-    let crop = at(2, 1, (0, 0, 10, 10)).unwrap_err();
-    assert!(crop.contains("3 x 2 pixels at 2 1 of a picture of 10 x 10"), "{crop}");
+    // A part of what is shown is a picture of its own, which is said.
+    let crop = at(2, 1, (0, 0, 10, 10)).unwrap();
+    assert_eq!((crop.width, crop.height, crop.rgb[5]), (3, 2, [5.0; 3]));
+    assert!(crop.warnings[0].contains("3 x 2 pixels at 2 1 of a picture of 10 x 10"), "{:?}", crop.warnings);
+    // What reaches beyond it and does not fill it is not.
+    let askew = at(2, 1, (0, 0, 4, 10)).unwrap_err();
+    assert!(askew.contains("3 x 2 pixels at 2 1 of a picture of 4 x 10"), "{askew}");
+}
+
+/// A crop is written with the window of the whole picture, and read back by our reader and another.
+#[test]
+fn a_crop_knows_its_place() {
+    let crop = crate::picture::Crop { x: 4, y: 1, width: 3, height: 2, whole: (9, 5) };
+    let pixels: Vec<[f32; 3]> = (0..6).map(|i| [i as f32, 0.5, -1.0]).collect();
+    let exr = Exr { width: 3, height: 2, rgb: &pixels, error: None, more: vec![], attributes: &[], crop: Some(crop) };
+    let bytes = exr.encode().unwrap();
+    let meta = MetaData::read_from_buffered(Cursor::new(&bytes), false).unwrap();
+    let header = &meta.headers[0];
+    assert_eq!(header.shared_attributes.display_window, IntegerBounds::new((0, 0), (9, 5)));
+    assert_eq!(header.data_window(), IntegerBounds::new((4, 1), (3, 2)));
+    let read = opened(&bytes).unwrap();
+    assert_eq!((read.width, read.height, &read.rgb), (3, 2, &pixels));
+    assert!(read.warnings[0].contains("at 4 1 of a picture of 9 x 5"), "{:?}", read.warnings);
 }
 
 /// Whatever is cut off or changed, there is an answer, soon, and no panic.
 #[test]
 fn damaged_files() {
-    let exr = Exr { width: 3, height: 2, rgb: &rgb(), error: Some(&rgb()), more: vec![], attributes: &[] };
+    let exr = Exr { width: 3, height: 2, rgb: &rgb(), error: Some(&rgb()), more: vec![], attributes: &[], crop: None };
     let bytes = exr.clone().encode().unwrap();
     for length in 0..bytes.len() {
         assert!(opened(&bytes[..length]).is_err(), "{length} of {} bytes", bytes.len());

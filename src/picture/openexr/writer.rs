@@ -1,7 +1,10 @@
 //! Writes a picture as OpenEXR.
 
 use super::{ERROR, Values};
+use crate::picture::crop::Crop;
 use ::exr::image::write::WritableImage;
+use ::exr::math::Vec2;
+use ::exr::meta::attribute::IntegerBounds;
 use ::exr::prelude::{
     AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, Layer, LayerAttributes, Text,
 };
@@ -25,6 +28,8 @@ pub struct Exr<'a> {
     pub more: Vec<(String, Values)>,
     /// What else is known about the picture, by name.
     pub attributes: &'a [(&'a str, Attribute<'a>)],
+    /// Which part of a picture it is, if it is one: the data window, in the display window of the whole.
+    pub crop: Option<Crop>,
 }
 
 /// A value in the head of a file.
@@ -77,9 +82,16 @@ impl Exr<'_> {
         let mut about = LayerAttributes { software_name: Some(text("luminaire")), ..LayerAttributes::default() };
         about.other = self.attributes.iter().map(|(name, value)| (text(name), value.stored())).collect();
         let size = (self.width as usize, self.height as usize);
+        if let Some(crop) = self.crop {
+            about.layer_position = Vec2(crop.x as i32, crop.y as i32);
+        }
         let layer = Layer::new(size, about, Encoding::SMALL_LOSSLESS, AnyChannels::sort(channels.into()));
         let mut buffered = BufWriter::with_capacity(1 << 20, &mut *out);
-        Image::from_layer(layer).write().to_buffered(&mut buffered).map_err(|e| e.to_string())?;
+        let mut image = Image::from_layer(layer);
+        if let Some(Crop { whole: (width, height), .. }) = self.crop {
+            image.attributes.display_window = IntegerBounds::new((0, 0), (width as usize, height as usize));
+        }
+        image.write().to_buffered(&mut buffered).map_err(|e| e.to_string())?;
         buffered.flush().map_err(|e| e.to_string())?;
         drop(buffered);
         sort_head(out).map_err(|e| e.to_string())

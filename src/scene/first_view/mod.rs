@@ -21,7 +21,7 @@ use self::surroundings::Bounds;
 use self::trial::Trial;
 use self::visit::{for_points, for_some_points};
 use super::{Projection, Scene, Sensor};
-use glam::{DMat3, DVec3, Vec3};
+use glam::{DMat3, DVec3, Vec2, Vec3};
 
 /// Points that a trial picture is fitted to.
 const TRIAL_POINTS: usize = 4000;
@@ -75,6 +75,7 @@ impl Scene {
             up,
             projection: Projection::Perspective { fov: (2.0 * eye.tangents[1].atan()).to_degrees() as f32 },
             lens: None,
+            shift: Vec2::ZERO,
         };
         FirstView { sensor, place }
     }

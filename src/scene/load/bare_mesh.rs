@@ -8,7 +8,7 @@ use crate::Result;
 use crate::scene::{
     Estimator, FilmSettings, Filter, FirstView, Integrator, Object, Projection, RenderSettings, Scene, Sensor, widen,
 };
-use glam::{Affine3A, DAffine3, DMat3, DVec3, Vec3};
+use glam::{Affine3A, DAffine3, DMat3, DVec3, Vec2, Vec3};
 use std::path::Path;
 
 /// Vertical field of view of the framing camera, in degrees.
@@ -16,6 +16,8 @@ const FOV: f32 = 40.0;
 /// A scene whose emitting triangles have less than this share of its area is not meant to be lit by them alone: they glow, as
 /// lava in a landscape does. The lamp of a Cornell box has seven times as much.
 const LEAST_EMITTING: f64 = 1e-3;
+/// How the note of where the camera stands begins; the place follows.
+pub(super) const FIRST_VIEW: &str = "the camera stands ";
 /// From z up to y up, to the last digit: x stays, z becomes y, y becomes -z.
 pub(super) const Z_UP: DMat3 = DMat3::from_cols(DVec3::X, DVec3::NEG_Z, DVec3::Y);
 
@@ -36,8 +38,6 @@ pub(super) struct BareMesh {
     pub smooth: Option<f32>,
     /// Which axis was up.
     pub up: Up,
-    /// Where the camera stands, in words.
-    pub place: String,
 }
 
 /// Loads a bare OBJ, as `choices` say or as suits it.
@@ -76,7 +76,9 @@ pub(super) fn load(path: &Path, choices: &Choices) -> Result<BareMesh> {
             up: Vec3::Y,
             projection: Projection::Perspective { fov: FOV },
             lens: None,
+            shift: Vec2::ZERO,
         },
+        cameras: Vec::new(),
         film: FILM,
         integrator: Integrator::Path(Estimator::default()),
         settings: RenderSettings::automatic(),
@@ -105,9 +107,9 @@ pub(super) fn load(path: &Path, choices: &Choices) -> Result<BareMesh> {
         ground::add(&mut scene, &Ground { height: ground, ..Ground::default() });
     }
     scene.warnings.extend(scene.dark_because());
-    let mut bare = BareMesh { scene, loader, sky, ground, smooth, up, place };
+    let mut bare = BareMesh { scene, loader, sky, ground, smooth, up };
     let note = bare.note(emitting, choices);
-    bare.scene.notes.push(note);
+    bare.scene.notes.extend([note, format!("{FIRST_VIEW}{place}")]);
     Ok(bare)
 }
 
@@ -136,10 +138,7 @@ impl BareMesh {
         let stem = self.scene.path.file_stem().unwrap_or_default().to_string_lossy();
         let file = for_a_shell(&format!("{stem}.toml"));
         let command = format!("luminaire scene {name}{} > {file}", options(choices));
-        format!(
-            "bare model: {light}, {ground}{smooth}{up}; the camera stands {}; `{command}` writes that down, to be changed",
-            self.place
-        )
+        format!("bare model: {light}, {ground}{smooth}{up}; `{command}` writes that down, to be changed")
     }
 }
 

@@ -3,6 +3,7 @@
 mod alike;
 mod bare_mesh;
 mod bodies;
+mod camera;
 mod choices;
 mod environment;
 mod far;
@@ -23,6 +24,7 @@ mod text_file;
 mod texture;
 mod toml;
 
+pub use camera::use_camera;
 pub use choices::{Choices, Sky, Up};
 pub use scene_file::{SceneFile, scene_file};
 

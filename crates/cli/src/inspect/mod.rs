@@ -4,16 +4,17 @@ mod integrator;
 mod tables;
 
 use self::tables::{luminaires, materials, meshes, objects, point, rgb, textures};
+use crate::shared::camera::CameraOption;
 use crate::shared::counts::pixels;
 use crate::shared::film_size::FilmSize;
 use crate::shared::foreseen::{Foreseen, foresee};
-use crate::shared::printing::print;
+use crate::shared::printing::{Notes, print};
 use crate::shared::scene_options::SceneOptions;
 use crate::shared::table::table;
 use luminaire::film::Demand;
-use luminaire::glam::DVec3;
+use luminaire::glam::{DVec3, Vec2};
 use luminaire::gpu::specialization::KernelModel;
-use luminaire::scene::{self, Environment, FilmSettings, Mesh, Projection, Scene};
+use luminaire::scene::{self, Environment, FilmSettings, Mesh, Projection, Scene, Sensor};
 use luminaire::{Error, Result};
 use std::collections::HashSet;
 use std::path::PathBuf;
@@ -49,11 +50,15 @@ pub struct Options {
     height: Option<u32>,
     #[command(flatten)]
     of_scene: SceneOptions,
+    #[command(flatten)]
+    camera: CameraOption,
 }
 
 /// Loads a scene and prints what is in it.
 pub fn run(options: &Options) -> Result<ExitCode> {
     let mut scene = options.of_scene.load(&options.scene)?;
+    // All cameras are listed, so that no note has to name them.
+    options.camera.choose(&mut scene, Notes { quiet: true })?;
     let own_film = scene.film;
     FilmSize { width: options.width, height: options.height, largest: LARGEST_SIDE }.apply(&mut scene.film);
     let FilmSettings { width, height, .. } = scene.film;
@@ -87,7 +92,7 @@ fn describe(scene: &Scene, foreseen: &Foreseen) -> String {
                 ),
             ),
             row("bounds", format!("{low:.4} to {high:.4}{}", moved(scene))),
-            row("sensor", sensor(scene)),
+            row("sensor", sensor(scene, &scene.sensor)),
             row(
                 "film",
                 format!(
@@ -116,6 +121,10 @@ fn describe(scene: &Scene, foreseen: &Foreseen) -> String {
             row("film takes", film_memory(scene)),
         ],
     );
+    if scene.cameras.len() > 1 || scene.cameras.iter().any(|camera| !camera.name.is_empty()) {
+        let rows = scene.cameras.iter().map(|camera| row(&camera.name, sensor(scene, &camera.sensor)));
+        text += &format!("\ncameras\n{}", table(2, &rows.collect::<Vec<_>>()));
+    }
     text += &format!("\nmeshes\n{}", table(2, &meshes(scene)));
     text += &format!("\nobjects\n{}", table(2, &objects(scene)));
     text += &format!("\nmaterials\n{}", table(2, &materials(scene)));
@@ -150,8 +159,7 @@ fn row(name: &str, value: String) -> Vec<String> {
     vec![name.into(), value]
 }
 
-fn sensor(scene: &Scene) -> String {
-    let s = &scene.sensor;
+fn sensor(scene: &Scene, s: &Sensor) -> String {
     let projection = match s.projection {
         Projection::Perspective { fov } => format!("{fov} degrees high"),
         Projection::Orthographic { height } => format!("orthographic, {height} high"),
@@ -165,7 +173,11 @@ fn sensor(scene: &Scene) -> String {
         format!(", aperture of radius {} ({shape}), in focus at distance {}", lens.radius, lens.focus_distance)
     });
     let (position, target) = (point(scene, s.position), point(scene, s.target));
-    format!("at {position}, looking at {target}, up {}, {projection}{lens}", rgb(s.up))
+    let shift = match s.shift {
+        Vec2::ZERO => String::new(),
+        Vec2 { x, y } => format!(", shifted by {x} widths to the right and {y} heights upwards"),
+    };
+    format!("at {position}, looking at {target}, up {}, {projection}{shift}{lens}", rgb(s.up))
 }
 
 /// A filter's name in scene files.
@@ -239,7 +251,7 @@ mod tests {
     use super::*;
     use luminaire::glam::Vec3;
     use luminaire::scene::{
-        Estimator, Filter, Integrator, Lens, Luminaire, Maps, Material, Object, RenderSettings, Sensor, Texture,
+        Camera, Estimator, Filter, Integrator, Lens, Luminaire, Maps, Material, Object, RenderSettings, Texture,
         Triangle,
     };
 
@@ -300,7 +312,18 @@ mod tests {
                 up: Vec3::Y,
                 projection: Projection::Perspective { fov: 40.0 },
                 lens: Some(Lens { radius: 0.25, focus_distance: 3.0, blades: 6, rotation: 10.0 }),
+                shift: Vec2::ZERO,
             },
+            cameras: vec![
+                Camera {
+                    name: "front".into(),
+                    sensor: Sensor {
+                        shift: Vec2::new(-0.5, 0.25),
+                        ..luminaire::scene::build::pinhole(Vec3::Z, Vec3::ZERO, Vec3::Y, 30.0)
+                    },
+                };
+                2
+            ],
             film: FilmSettings { width: 64, height: 48, filter: Filter::BlackmanHarris, filter_radius: 1.5 },
             integrator: Integrator::Path(estimator),
             settings: RenderSettings::default(),
@@ -315,6 +338,8 @@ mod tests {
             "22 in 22 objects; 1 stored in 1 mesh",
             "64 x 48 pixels, blackman-harris filter of radius 1.5",
             "40 degrees high, aperture of radius 0.25 (6 blades, turned by 10 degrees), in focus at distance 3",
+            "front",
+            "30 degrees high, shifted by -0.5 widths to the right and 0.25 heights upwards",
             "radiance (0.5 0.5 0.5) from everywhere",
             "estimator `default`",
             "at most 4 indirect bounces",

@@ -28,7 +28,7 @@ impl<'a> Checkpoint<'a> {
         let every = Duration::from_secs_f64(options.checkpoint_every);
         Some(Checkpoint {
             path: options.checkpoint.as_deref()?,
-            provenance: Provenance::of(scene),
+            provenance: Provenance::of(scene).cropped(options.crop_of((scene.film.width, scene.film.height))),
             every,
             due: Instant::now() + every,
             notes,
@@ -106,15 +106,24 @@ pub fn check(options: &Options) -> Result<()> {
 pub fn begin(options: &Options, scene: &Scene, notes: Notes) -> Result<Rendered> {
     let first = options.samples.as_ref().map_or(0, |samples| samples.start);
     let size = (scene.film.width, scene.film.height);
-    let Some(path) = options.checkpoint.as_deref().filter(|_| options.resume) else {
-        return Rendered::nothing(size, first);
+    let crop = options.crop_of(size);
+    let nothing = || {
+        let mut rendered = match crop {
+            Some(crop) => Rendered::nothing_of_crop(crop, first),
+            None => Rendered::nothing(size, first),
+        }?;
+        if scene.settings.transparent {
+            rendered.film.count_misses();
+        }
+        Ok(rendered)
     };
+    let Some(path) = options.checkpoint.as_deref().filter(|_| options.resume) else { return nothing() };
     pictures(options).into_iter().chain([path]).for_each(files::remove_left_over);
     if !exists(path)? {
         notes.note(&format!("{}: no checkpoint yet; starting anew", path.display()));
-        return Rendered::nothing(size, first);
+        return nothing();
     }
-    let rendered = part::resume(path, scene)?;
+    let rendered = part::resume_crop(path, scene, crop)?;
     if rendered.film.first_sample != first {
         return Err(Error::read(
             path,

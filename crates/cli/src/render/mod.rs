@@ -34,8 +34,8 @@ use crate::shared::printing::Notes;
 use crate::shared::tone_name::ToneName;
 use crate::shared::values::Pixel;
 use luminaire::backend::{self, Renderer, Request};
-use luminaire::film::Aovs;
-use luminaire::render::{End, Limits, Rendered, Tracer, aovs, resume};
+use luminaire::film::{Aovs, Demand};
+use luminaire::render::{Cropped, End, Limits, Rendered, Tracer, aovs, resume};
 use luminaire::scene::{Exposure, FilmSettings, Scene};
 use luminaire::{Error, Result};
 use std::path::PathBuf;
@@ -70,6 +70,7 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     let mut seconds = Seconds::default();
     let start = Instant::now();
     let mut scene = options.of_scene.load(&options.scene)?;
+    options.camera.choose(&mut scene, notes)?;
     seconds.load = start.elapsed().as_secs_f64();
     outputs.check(scene.files.iter().map(|path| ("a file of the scene", &**path)))?;
     let own_film = scene.film;
@@ -103,7 +104,17 @@ fn change(scene: &mut Scene, options: &Options) -> Result<()> {
         // Nothing is shown.
         scene.settings.exposure = Exposure::Stops(0.0);
     }
+    scene.settings.transparent = options.transparent;
     let FilmSettings { width, height, .. } = scene.film;
+    // Every pixel of the whole picture has a number, also where only a part is rendered.
+    if let Err(error @ Error::Usage(_)) = (Demand { width, height, ..Demand::default() }).check() {
+        return Err(error);
+    }
+    if let Some(crop) = options.crop_of((width, height)).filter(|crop| !crop.is_inside()) {
+        return Err(Error::Usage(format!(
+            "--crop {crop} reaches beyond the picture, which has {width} x {height} pixels: X + W may be {width} at most, and Y + H {height}"
+        )));
+    }
     outputs::demand(options, &scene.film).check()?;
     outputs::check_error_map(options, limits(options, scene).spp, " (the scene says `spp = 1`)")?;
     match options.pixel {
@@ -150,6 +161,8 @@ fn trace(
         }
     };
     let mut tracer = FailingTracer::new(renderer.tracer.as_mut())?;
+    let crop = options.crop_of((scene.film.width, scene.film.height));
+    let mut tracer = Cropped::new(&mut tracer, crop.as_ref());
     let mut rendered = resume(&mut tracer, begun, limits, &mut watch, &interrupts::STOP);
     reporter.finish();
     if let (Some(wanted), least) = (limits.spp, rendered.film.first_sample + rendered.film.least_samples())

@@ -1,12 +1,14 @@
 //! What to render, and how.
 
 use crate::shared::backend_name::BackendName;
+use crate::shared::camera::CameraOption;
 use crate::shared::counts::{pixels, samples, seed};
 use crate::shared::estimator::EstimatorOptions;
 use crate::shared::exit_codes::EXIT_CODES;
 use crate::shared::scene_options::SceneOptions;
 use crate::shared::tone_name::{ToneName, exposure};
-use crate::shared::values::{Pixel, frames, noise, pixel, range, seconds, turntable};
+use crate::shared::values::{Pixel, Rectangle, frames, noise, pixel, range, rectangle, seconds, turntable};
+use luminaire::picture::Crop;
 use luminaire::scene::Exposure;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -27,6 +29,12 @@ Examples:
       until the estimated error is 2 %, but no longer than ten minutes; and where it is how large
   luminaire render model.obj --spp 4096 -o model.exr --checkpoint model.checkpoint.exr --resume
       goes on where it was, however it ended; the same command again after Ctrl-C, a crash or a power cut
+  luminaire render house.toml --camera garden -o garden.png
+      one of the scene's cameras; --camera house-camera-1.toml is one that the window wrote
+  luminaire render house.toml --crop 800,600,200,100 --spp 4096 -o corner.png
+      a piece of 200 x 100 pixels of the picture, as the whole picture would have it
+  luminaire render chair.toml --transparent -o chair.png
+      to be put over another picture
   luminaire render model.obj --samples 1024..2048 -o part-1.exr
       one part of four, on one machine of four; `luminaire merge part-*.exr -o model.exr` joins them
   luminaire render model.obj --turntable 120 -o frame-%04d.png
@@ -38,8 +46,18 @@ Examples:
 pub const LARGEST_SIDE: u32 = 65536;
 
 /// Options that mean nothing where nothing is rendered.
-const REPLAY_CONFLICTS: [&str; 8] =
-    ["output", "error_map", "aov", "stats", "checkpoint", "checkpoint_every", "resume", "turntable"];
+const REPLAY_CONFLICTS: [&str; 10] = [
+    "output",
+    "crop",
+    "transparent",
+    "error_map",
+    "aov",
+    "stats",
+    "checkpoint",
+    "checkpoint_every",
+    "resume",
+    "turntable",
+];
 
 /// What to render, and how.
 #[derive(Debug, clap::Args)]
@@ -47,6 +65,17 @@ const REPLAY_CONFLICTS: [&str; 8] =
 pub struct Options {
     /// A scene file (.toml) or any OBJ file, which then gets a camera, and a sky and a ground if nothing in it emits.
     pub scene: PathBuf,
+
+    #[command(flatten)]
+    pub camera: CameraOption,
+    /// Render only these pixels: the left column and the upper row, counted from 0 at the upper left of the picture, width and height. They are those of the whole
+    /// picture to the last bit, in a picture of W x H pixels; an EXR knows its place in the whole (data window).
+    #[arg(long, value_name = "X,Y,W,H", allow_negative_numbers = true, value_parser = rectangle, help_heading = "Framing")]
+    pub crop: Option<Rectangle>,
+    /// Hide the sky from the camera and give the picture alpha: the share of a pixel's samples that met something, glass included. The sky still lights the scene, and is
+    /// seen in mirrors and through glass. A PNG has straight alpha, an EXR the channel A and colours multiplied by it; an HDR has none.
+    #[arg(long, help_heading = "Framing")]
+    pub transparent: bool,
 
     /// A file to write; .png, .exr or .hdr says the format. May be given several times [default: <SCENE>.png here].
     #[arg(short, long, value_name = "FILE", help_heading = "Output")]
@@ -67,7 +96,7 @@ pub struct Options {
     pub aov: bool,
     /// Write a denoised picture, too. It has a bias that the estimated error does not know.
     #[cfg(feature = "denoise")]
-    #[arg(long, value_name = "FILE", conflicts_with = "samples", help_heading = "Output")]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["samples", "transparent"], help_heading = "Output")]
     pub denoised: Option<PathBuf>,
     /// Write the figures of the run to a JSON file.
     #[arg(long, value_name = "FILE.json", help_heading = "Output")]
@@ -144,6 +173,11 @@ pub struct Options {
 }
 
 impl Options {
+    /// Which part of a picture of this size is rendered, if not all of it.
+    pub fn crop_of(&self, whole: (u32, u32)) -> Option<Crop> {
+        self.crop.map(|Rectangle { x, y, width, height }| Crop { x, y, width, height, whole })
+    }
+
     /// Whether a file will hold what the camera sees first.
     pub fn wants_aovs(&self) -> bool {
         #[cfg(feature = "denoise")]

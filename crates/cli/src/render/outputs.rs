@@ -5,7 +5,7 @@ use super::outcome::Outcome;
 use super::stats::Stats;
 use crate::shared::outputs::Outputs;
 use crate::shared::printing::warn;
-use luminaire::film::Demand;
+use luminaire::film::{Demand, HDR_HAS_NO_ALPHA};
 use luminaire::part::Provenance;
 use luminaire::scene::FilmSettings;
 use luminaire::{Error, Result, files, part, picture};
@@ -19,7 +19,7 @@ pub fn is_exr(path: &Path) -> bool {
     matches!(picture::Format::of(path), Ok(picture::Format::Exr))
 }
 
-/// Refuses `--samples` and `--aov` where no output is an EXR file, the only format that holds a part or layers.
+/// Refuses `--samples` and `--aov` where no output is an EXR file, the only format that holds a part or layers, and `--transparent` where one has no alpha.
 pub fn check_layers(options: &Options) -> Result<()> {
     if options.samples.is_some() && options.pixel.is_none() && !options.output.iter().any(|path| is_exr(path)) {
         return Err(Error::Usage(
@@ -28,6 +28,12 @@ pub fn check_layers(options: &Options) -> Result<()> {
     }
     if options.aov && !options.output.iter().any(|path| is_exr(path)) {
         return Err(Error::Usage("--aov adds layers, which only an EXR file holds: name one with -o FILE.exr".into()));
+    }
+    let hdr = |path: &&PathBuf| matches!(picture::Format::of(path), Ok(picture::Format::Hdr));
+    if options.transparent
+        && let Some(path) = options.output.iter().find(hdr)
+    {
+        return Err(Error::Usage(format!("--transparent -o {}: {HDR_HAS_NO_ALPHA}", path.display())));
     }
     Ok(())
 }
@@ -89,13 +95,16 @@ pub fn check_error_map(options: &Options, spp: Option<u32>, whence: &str) -> Res
 /// What the film and its files take of this machine's memory.
 pub fn demand(options: &Options, film: &FilmSettings) -> Demand {
     let exr = options.output.iter().any(|path| is_exr(path));
+    let crop = options.crop_of((film.width, film.height));
+    let (width, height) = crop.map_or((film.width, film.height), |crop| (crop.width, crop.height));
     Demand {
-        width: film.width,
-        height: film.height,
+        width,
+        height,
         sums: options.checkpoint.is_some() || options.samples.is_some(),
         exr,
         aovs: options.wants_aovs(),
         errors: options.error_map.is_some(),
+        alpha: options.transparent,
     }
 }
 
@@ -140,7 +149,7 @@ pub fn save_stats(path: &Path, figures: &impl Serialize) -> Result<()> {
 fn write_pictures(outcome: &Outcome, pictures: &[PathBuf]) -> Result<()> {
     let Outcome { options, scene, rendered, .. } = outcome;
     let development = outcome.foreseen.development;
-    let provenance = options.samples.as_ref().map(|_| Provenance::of(scene));
+    let provenance = options.samples.as_ref().map(|_| Provenance::of(scene).cropped(rendered.film.crop));
     let save = |path: &PathBuf| match (&provenance, &outcome.aovs, picture::Format::of(path)?) {
         (Some(provenance), _, picture::Format::Exr) => part::save(path, rendered, provenance),
         (_, Some(aovs), picture::Format::Exr) if options.aov => rendered.film.save_with_aovs(path, aovs),
@@ -149,7 +158,7 @@ fn write_pictures(outcome: &Outcome, pictures: &[PathBuf]) -> Result<()> {
     // All are tried before an error is returned: if one cannot be written, the others still are.
     let saved: Vec<_> = pictures.iter().map(save).collect();
     saved.into_iter().collect::<Result<()>>()?;
-    let FilmSettings { width, height, .. } = scene.film;
+    let (width, height) = (rendered.film.width, rendered.film.height);
     if let (Some(path), Some(errors)) = (&options.error_map, rendered.film.error_map()) {
         let [low, high] = heat_map::RELATIVE_ERRORS;
         picture::save_png(path, &heat_map::heat_map(width, height, &errors.relative, low, high))?;

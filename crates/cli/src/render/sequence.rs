@@ -8,7 +8,7 @@ use super::outputs::{save_stats, write_frame};
 use super::progress::Reporter;
 use super::seconds::Seconds;
 use super::stats::Stats;
-use super::{ending, layers, limits, note_renderer};
+use super::{checkpoint, ending, layers, limits, note_renderer};
 use crate::shared::error_line::error_line;
 use crate::shared::exit_codes::{DEVICE_FAILED, INTERRUPTED};
 use crate::shared::foreseen::Foreseen;
@@ -19,7 +19,7 @@ use crate::shared::units::duration;
 use luminaire::backend::{self, Request};
 use luminaire::part::Provenance;
 use luminaire::picture::{self, Format};
-use luminaire::render::{End, Rendered, resume};
+use luminaire::render::{Cropped, End, Rendered, resume};
 use luminaire::scene::{Scene, Sensor};
 use luminaire::{Error, Result, files};
 use serde::Serialize;
@@ -165,7 +165,9 @@ pub fn run(
     mut seconds: Seconds,
     notes: Notes,
 ) -> Result<ExitCode> {
-    let marks = Marks { sequence, options, scene, foreseen, provenance: Provenance::of(scene) };
+    let crop = options.crop_of((scene.film.width, scene.film.height));
+    let provenance = Provenance::of(scene).cropped(crop);
+    let marks = Marks { sequence, options, scene, foreseen, provenance };
     let (kept, missing): (Vec<_>, Vec<_>) =
         sequence.frames.iter().partition(|(frame, files)| marks.are_on(*frame, files));
     if !kept.is_empty() {
@@ -191,7 +193,8 @@ pub fn run(
                 break;
             }
             let mut tracer = FailingTracer::new(renderer.tracer.as_mut())?;
-            let nothing = Rendered::nothing(renderer.size, 0)?;
+            let mut tracer = Cropped::new(&mut tracer, crop.as_ref());
+            let nothing = checkpoint::begin(options, scene, notes)?;
             let mut watch = |rendered: &Rendered| reporter.update(&rendered.progress);
             let mut rendered = resume(&mut tracer, nothing, limits(options, scene), &mut watch, &interrupts::STOP);
             let aovs = layers(options, &mut rendered, &mut tracer);

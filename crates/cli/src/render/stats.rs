@@ -2,7 +2,7 @@
 
 use super::outcome::Outcome;
 use super::seconds::Seconds;
-use luminaire::picture::Tone;
+use luminaire::picture::{Crop, Tone};
 use luminaire::render::End;
 use serde::Serialize;
 
@@ -28,6 +28,8 @@ pub struct Stats<'a> {
     triangles: u64,
     width: u32,
     height: u32,
+    /// Where these pixels lie, if they are a part of a picture.
+    crop: Option<Crop>,
     /// "samples", "time" or "noise": a limit was met; "no-estimate": there was `--noise`, and nothing to estimate; "interrupted"; "failed".
     end: &'static str,
     spp_least: u32,
@@ -73,6 +75,7 @@ impl<'a> Stats<'a> {
             triangles: scene.triangle_count(),
             width: rendered.film.width,
             height: rendered.film.height,
+            crop: rendered.film.crop,
             end: match rendered.end {
                 End::Samples => "samples",
                 End::Time => "time",

@@ -1,6 +1,7 @@
 //! What several subcommands share: options, their values, and what they print.
 
 pub mod backend_name;
+pub mod camera;
 pub mod counts;
 pub mod error_line;
 pub mod estimator;

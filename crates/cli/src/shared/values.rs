@@ -55,6 +55,30 @@ pub fn pixel(text: &str) -> Result<Pixel, String> {
     }
 }
 
+/// A rectangle of pixels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Rectangle {
+    /// Column of the left pixels, counted from 0.
+    pub x: u32,
+    /// Row of the upper pixels, counted from 0 at the top.
+    pub y: u32,
+    /// Columns, at least 1.
+    pub width: u32,
+    /// Rows, at least 1.
+    pub height: u32,
+}
+
+/// A rectangle of pixels, as `X,Y,W,H`.
+pub fn rectangle(text: &str) -> Result<Rectangle, String> {
+    let numbers: Option<Vec<u32>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[x, y, width, height]) if width > 0 && height > 0 => Ok(Rectangle { x, y, width, height }),
+        _ => Err("expected the left column and the upper row of a rectangle of pixels, counted from 0 at the upper left of the picture, and its width \
+                  and height, at least 1, for example 320,180,640,360"
+            .into()),
+    }
+}
+
 /// A number from 0.
 pub fn limit(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {

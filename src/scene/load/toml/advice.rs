@@ -64,14 +64,19 @@ pub(super) fn wrong_brackets(text: &str) -> Option<(Range<usize>, String)> {
         let is_table = |value: &DeValue| matches!(value, DeValue::Table(_));
         let message = match (list, value.get_ref()) {
             (false, DeValue::Table(_)) => continue,
+            // Of which there may be one or several.
+            (false, DeValue::Array(tables))
+                if name == "sensor" && tables.iter().all(|value| is_table(value.get_ref())) =>
+            {
+                continue;
+            }
             (true, DeValue::Array(tables)) if tables.iter().all(|value| is_table(value.get_ref())) => continue,
             (true, DeValue::Table(_)) => {
                 format!("one table, expected a list of them: write [[ ]] around its name: [[{name}]]")
             }
-            (false, DeValue::Array(tables)) if tables.iter().any(|value| is_table(value.get_ref())) => format!(
-                "a scene has one {name}: write [{name}] in single brackets, once{}",
-                if name == "sensor" { "; another camera is another scene file" } else { "" }
-            ),
+            (false, DeValue::Array(tables)) if tables.iter().any(|value| is_table(value.get_ref())) => {
+                format!("a scene has one {name}: write [{name}] in single brackets, once")
+            }
             _ => format!("`{name}` is a table: a line {}, and below it keys as `{} = ...`", written(name), keys[0]),
         };
         return Some((key.span(), message));
@@ -153,7 +158,9 @@ fn advice(message: &str, text: &str, span: Range<usize>) -> Option<String> {
         let name = line.trim_matches(['[', ']', ' ']);
         return Some(match tables().iter().find(|(table, ..)| *table == name && line.starts_with('[')) {
             Some((_, true, _)) => format!("write [[{name}]], with two brackets, each time"),
-            Some(_) if name == "sensor" => "a scene has one [sensor]; another camera is another scene file".to_owned(),
+            Some(_) if name == "sensor" => {
+                "of several cameras write each as [[sensor]], with two brackets and a `name` of its own".to_owned()
+            }
             Some(_) => format!("a scene has one [{name}]: put all its keys below it"),
             None => "it stands in this table already; leave one of them out".to_owned(),
         });

@@ -1,7 +1,7 @@
 //! A scene file, and where in it something stands.
 
-use crate::Error;
-use crate::scene::load::text_file::line_and_column;
+use crate::scene::load::text_file::{line_and_column, read_bytes};
+use crate::{Error, Result};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -9,6 +9,16 @@ use std::path::{Path, PathBuf};
 pub(super) struct File<'a> {
     pub path: &'a Path,
     pub text: &'a str,
+}
+
+/// The text of a scene file.
+pub(super) fn read_text(path: &Path) -> Result<String> {
+    let bytes = read_bytes(path)?;
+    let text = std::str::from_utf8(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes)).map_err(|error| {
+        let line = 1 + bytes[..error.valid_up_to()].iter().filter(|byte| **byte == b'\n').count();
+        Error::Parse { path: path.to_owned(), line, column: 0, message: "a scene file has to be UTF-8 text".into() }
+    })?;
+    Ok(text.to_owned())
 }
 
 impl File<'_> {

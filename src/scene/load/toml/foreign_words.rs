@@ -6,7 +6,11 @@ type Words = (&'static str, &'static [&'static str], &'static str);
 /// Keys in small letters with underscores. The first row that fits is taken.
 pub(super) const KEYS: &[Words] = &[
     // Outside of every table, or a table of another name.
-    ("", &["camera", "cameras", "view", "perspective"], "the camera is the table [sensor]"),
+    (
+        "",
+        &["camera", "cameras", "view", "perspective"],
+        "the camera is the table [sensor]; several are [[sensor]], each with a `name`",
+    ),
     (
         "top",
         &["light", "lights", "lamp", "lamps", "emitter", "emitters", "luminaires", "sun", "point_light"],
@@ -110,6 +114,23 @@ pub(super) const KEYS: &[Words] = &[
         &["focus", "focal_distance", "focaldistance", "focus_dist"],
         "the distance that is in focus is `focus_distance`",
     ),
+    (
+        "sensor",
+        &[
+            "shift_x",
+            "shift_y",
+            "lens_shift",
+            "vertical_shift",
+            "tilt_shift",
+            "principal_point_offset",
+            "principal_point_offset_x",
+            "principal_point_offset_y",
+            "screen_window",
+            "offset",
+        ],
+        "`shift = [x, y]` shifts the picture, by so many of its widths to the right and of its heights upwards",
+    ),
+    ("sensor", &["id", "label", "camera", "title"], "what --camera calls it is its `name`"),
     (
         "sensor",
         &["near", "far", "near_clip", "far_clip", "clip_start", "clip_end", "znear", "zfar"],

@@ -1,6 +1,7 @@
 //! Scene files in TOML; `scenes/README.md` describes the format.
 
 mod advice;
+mod cameras;
 mod contents;
 mod file;
 mod foreign_words;
@@ -13,34 +14,37 @@ use super::choices::Choices;
 use super::environment;
 use super::ground::{self, Ground};
 use super::loader::Loader;
-use super::text_file::read_bytes;
-use crate::scene::{FirstView, Projection, RenderSettings, Scene, Sensor};
+use crate::scene::{Camera, FirstView, Projection, RenderSettings, Scene, Sensor};
 use crate::{Error, Result};
 use advice::{in_plain_words, wrong_brackets};
-use file::File;
-use glam::{DVec3, Vec3};
+pub(super) use cameras::camera_file;
+use file::{File, read_text};
+use glam::{DVec3, Vec2, Vec3};
 use std::path::Path;
 use tables::{GroundTable, SceneFile};
 
+/// How the warning of a scene file without a camera begins; where the camera stands follows.
+pub(super) const NO_SENSOR: &str = "no [sensor]; the camera stands ";
+
 /// Loads a scene file.
 pub(super) fn load(path: &Path, choices: &Choices) -> Result<Scene> {
-    let bytes = read_bytes(path)?;
-    let text = std::str::from_utf8(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes)).map_err(|error| {
-        let line = 1 + bytes[..error.valid_up_to()].iter().filter(|byte| **byte == b'\n').count();
-        Error::Parse { path: path.to_owned(), line, column: 0, message: "a scene file has to be UTF-8 text".into() }
-    })?;
-    let file = File { path, text };
-    if let Some((span, message)) = wrong_brackets(text) {
-        return Err(file.error(span, message));
-    }
-    let scene: SceneFile = ::toml::from_str(text).map_err(|error| {
-        let span = error.span().unwrap_or(0..0);
-        file.error(span.clone(), in_plain_words(error.message().trim(), text, span))
-    })?;
-    file.build(scene, choices)
+    let text = read_text(path)?;
+    let file = File { path, text: &text };
+    file.build(file.parse()?, choices)
 }
 
 impl File<'_> {
+    /// The tables of the file.
+    fn parse(&self) -> Result<SceneFile> {
+        if let Some((span, message)) = wrong_brackets(self.text) {
+            return Err(self.error(span, message));
+        }
+        ::toml::from_str(self.text).map_err(|error| {
+            let span = error.span().unwrap_or(0..0);
+            self.error(span.clone(), in_plain_words(error.message().trim(), self.text, span))
+        })
+    }
+
     fn build(&self, mut file: SceneFile, choices: &Choices) -> Result<Scene> {
         let Choices { sky, ground, smooth: _, up: _ } = choices;
         if sky.is_some() {
@@ -54,13 +58,8 @@ impl File<'_> {
         let film = self.film(file.film)?;
         let integrator = self.integrator(&file.integrator)?;
         // What is wrong in this file is said before any other file is read; where the origin is, only those know.
-        let near = file.sensor.as_ref().map_or(DVec3::ZERO, |table| far_origin(table.get_ref().position.0));
-        let mut fov = None;
-        if let Some(table) = &file.sensor
-            && let Projection::Perspective { fov: degrees } = self.sensor(table, near)?.projection
-        {
-            fov = Some(degrees);
-        }
+        let near = file.sensor.as_ref().map_or(DVec3::ZERO, |sensors| sensors.get_ref().near());
+        let cameras = self.cameras(file.sensor.as_ref(), None)?;
         for table in &file.luminaire {
             self.luminaire(table, near)?;
         }
@@ -69,8 +68,12 @@ impl File<'_> {
         if let Some(image) = file.environment.as_ref().and_then(|table| table.get_ref().image.as_ref()) {
             loader.files.extend(Some(self.beside(image.get_ref())).filter(|path| path.is_file()));
         }
-        if let Some(warning) = fov.and_then(radians::field_of_view) {
-            loader.warnings.push(self.warning(&warning));
+        for camera in &cameras {
+            if let Projection::Perspective { fov } = camera.sensor.projection
+                && let Some(warning) = radians::field_of_view(fov)
+            {
+                loader.warnings.push(self.warning(&warning));
+            }
         }
         let environment = match (sky, &file.environment) {
             (Some(sky), _) => environment::of(sky, &mut loader.files, &mut loader.warnings)?,
@@ -87,7 +90,7 @@ impl File<'_> {
             return Err(Error::scene(self.path, "nothing to trace: the scene file has no [[object]]"));
         }
         let origin = loader.settle(&mut objects, &to_world);
-        let sensor = file.sensor.map(|table| self.sensor(&table, origin)).transpose()?;
+        let cameras: Vec<Camera> = self.cameras(file.sensor.as_ref(), Some(origin))?;
         let luminaires: Result<Vec<_>> = file.luminaire.iter().map(|table| self.luminaire(table, origin)).collect();
         let luminaires = luminaires?;
         let defaults = RenderSettings::default();
@@ -97,6 +100,7 @@ impl File<'_> {
             exposure: file.render.exposure.map_or(defaults.exposure, |exposure| exposure.0),
             tone: file.render.tone.unwrap_or(defaults.tone),
             sampler: file.render.sampler.unwrap_or(defaults.sampler),
+            transparent: defaults.transparent,
         };
         let (materials, textures) = loader.finish_materials(&objects);
         let mut scene = Scene {
@@ -114,7 +118,9 @@ impl File<'_> {
                 up: Vec3::Y,
                 projection: Projection::Perspective { fov: 40.0 },
                 lens: None,
+                shift: Vec2::ZERO,
             },
+            cameras,
             film,
             integrator,
             settings,
@@ -123,11 +129,14 @@ impl File<'_> {
             notes: Vec::new(),
             ground: None,
         };
-        scene.sensor = sensor.unwrap_or_else(|| {
-            let FirstView { sensor, place } = scene.first_view(Vec3::Y);
-            scene.warnings.push(self.warning(&format!("no [sensor]; the camera stands {place}")));
-            sensor
-        });
+        scene.sensor = match scene.cameras.first() {
+            Some(camera) => camera.sensor.clone(),
+            None => {
+                let FirstView { sensor, place } = scene.first_view(Vec3::Y);
+                scene.warnings.push(self.warning(&format!("{NO_SENSOR}{place}")));
+                sensor
+            }
+        };
         // The camera frames what stands on the ground.
         if let Some(GroundTable { height, diffuse, size }) = ground {
             let ground = Ground {
@@ -140,9 +149,4 @@ impl File<'_> {
         scene.warnings.extend(scene.dark_because());
         Ok(scene)
     }
-}
-
-/// Where the checks of a sensor at `position` take the origin to be, before it is known: at the sensor, if that is far away.
-fn far_origin(position: DVec3) -> DVec3 {
-    if position.abs().max_element() > 1e4 { position } else { DVec3::ZERO }
 }

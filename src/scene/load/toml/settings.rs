@@ -13,7 +13,7 @@ use crate::scene::{
 };
 use crate::{Error, Result};
 use ::toml::Spanned;
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -32,9 +32,9 @@ impl File<'_> {
         Ok(FilmSettings { width, height, filter: table.filter, filter_radius })
     }
 
-    /// The `[sensor]`, in a scene with this origin.
-    pub(super) fn sensor(&self, table: &Spanned<SensorTable>, origin: DVec3) -> Result<Sensor> {
-        let of = table.get_ref();
+    /// A `[sensor]`, in a scene with this origin.
+    pub(super) fn sensor(&self, table: &SensorTable, span: Range<usize>, origin: DVec3) -> Result<Sensor> {
+        let of = table;
         let projection = match (of.kind, &of.fov, &of.height) {
             (SensorKind::Perspective, Some(fov), None) => Projection::Perspective { fov: fov.get_ref().0 },
             (SensorKind::Orthographic, None, Some(height)) => Projection::Orthographic { height: height.get_ref().0 },
@@ -47,14 +47,13 @@ impl File<'_> {
                 return Err(self.error(fov.span(), message));
             }
             (SensorKind::Perspective, None, None) => {
-                return Err(self.error(
-                    table.span(),
-                    "missing field `fov`: the vertical field of view in degrees, for example 45",
-                ));
+                return Err(
+                    self.error(span, "missing field `fov`: the vertical field of view in degrees, for example 45")
+                );
             }
             (SensorKind::Orthographic, None, None) => {
                 let message = "missing field `height`: how much of the scene the picture shows, from bottom to top";
-                return Err(self.error(table.span(), message));
+                return Err(self.error(span, message));
             }
         };
         let sensor = Sensor {
@@ -63,6 +62,7 @@ impl File<'_> {
             up: of.up.map_or(Vec3::Y, Triple::rounded),
             projection,
             lens: None,
+            shift: of.shift.map_or(Vec2::ZERO, |shift| shift.0),
         };
         let view = sensor.target.as_dvec3() - sensor.position.as_dvec3();
         let up = sensor.up.as_dvec3();
@@ -76,7 +76,7 @@ impl File<'_> {
             let lens = self.lens(of, view.length() as f32)?;
             return Ok(Sensor { lens, ..sensor });
         };
-        Err(self.error(table.span(), wrong))
+        Err(self.error(span, wrong))
     }
 
     /// The sensor's lens, if its aperture is open; `to_target` is the distance at which it is in focus unless something else is said.

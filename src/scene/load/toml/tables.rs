@@ -2,17 +2,19 @@
 
 use super::values::{
     Albedo, Angle, Blades, Bounces, Colour, Eta, Exact, Exponent, Exposure, FilterRadius, Finite, Fov, MapOffset,
-    MapScale, Matrix, NotNegative, Pixels, Positive, Probability, Samples, Triple, Unit,
+    MapScale, Matrix, NotNegative, Pixels, Positive, Probability, Samples, Shift, Triple, Unit,
 };
 use crate::scene::{AreaSampling, Directions, Extinction, Filter, LightSampling, Sampler, Tone};
 use ::toml::Spanned;
-use serde::Deserialize;
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{MapAccess, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SceneFile {
     pub film: Option<Spanned<FilmTable>>,
-    pub sensor: Option<Spanned<SensorTable>>,
+    pub sensor: Option<Spanned<Sensors>>,
     pub environment: Option<Spanned<EnvironmentTable>>,
     pub ground: Option<GroundTable>,
     #[serde(default)]
@@ -40,6 +42,7 @@ pub(super) struct FilmTable {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SensorTable {
+    pub name: Option<Spanned<String>>,
     #[serde(default)]
     pub kind: SensorKind,
     pub position: Triple,
@@ -51,6 +54,40 @@ pub(super) struct SensorTable {
     pub focus_distance: Option<Spanned<Positive>>,
     pub blades: Option<Spanned<Blades>>,
     pub blade_rotation: Option<Spanned<Finite>>,
+    pub shift: Option<Shift>,
+}
+
+/// One table or a list of them.
+#[allow(clippy::large_enum_variant, reason = "there is one in a file")]
+pub(super) enum Sensors {
+    /// `[sensor]`.
+    One(SensorTable),
+    /// `[[sensor]]`, any number of times.
+    Several(Vec<Spanned<SensorTable>>),
+}
+
+impl<'de> Deserialize<'de> for Sensors {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+        // Not an untagged enum, which would lose the places and the words of errors within.
+        struct Tables;
+        impl<'de> Visitor<'de> for Tables {
+            type Value = Sensors;
+            fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+                f.write_str("a table [sensor], or a list of tables [[sensor]]")
+            }
+            fn visit_map<A: MapAccess<'de>>(self, table: A) -> std::result::Result<Sensors, A::Error> {
+                SensorTable::deserialize(MapAccessDeserializer::new(table)).map(Sensors::One)
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> std::result::Result<Sensors, A::Error> {
+                let mut tables = Vec::new();
+                while let Some(table) = list.next_element()? {
+                    tables.push(table);
+                }
+                Ok(Sensors::Several(tables))
+            }
+        }
+        deserializer.deserialize_any(Tables)
+    }
 }
 
 #[derive(Deserialize, Clone, Copy, Default, PartialEq, Eq)]

@@ -17,6 +17,9 @@ const LARGEST_FILTER_RADIUS: f32 = 64.0;
 /// More blades are a circle.
 const MOST_BLADES: i64 = 64;
 
+/// Most widths or heights by which a picture is shifted; real lenses do one or two.
+const LARGEST_SHIFT: f32 = 100.0;
+
 type Checked<T> = std::result::Result<T, &'static str>;
 
 /// A list of numbers, no more and no fewer: the parser itself would take the first `N` of a longer one.
@@ -29,10 +32,10 @@ impl<'de, const N: usize> Deserialize<'de> for Numbers<N> {
         impl<'de, const N: usize> Visitor<'de> for Elements<N> {
             type Value = Numbers<N>;
             fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-                f.write_str(if N == 3 {
-                    "three numbers [x, y, z]"
-                } else {
-                    "rows of four numbers: [[1, 0, 0, 5], [0, 1, 0, 0], [0, 0, 1, 0]]"
+                f.write_str(match N {
+                    2 => "two numbers [x, y]",
+                    3 => "three numbers [x, y, z]",
+                    _ => "rows of four numbers: [[1, 0, 0, 5], [0, 1, 0, 0], [0, 0, 1, 0]]",
                 })
             }
             fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> std::result::Result<Numbers<N>, A::Error> {
@@ -43,7 +46,7 @@ impl<'de, const N: usize> Deserialize<'de> for Numbers<N> {
                 let count = numbers.len();
                 numbers.try_into().map(Numbers).map_err(|_| {
                     let advice = if (N, count) == (3, 4) { "; a fourth, as alpha, has no place here" } else { "" };
-                    let many = if N == 3 { "three" } else { "four" };
+                    let many = ["two", "three", "four"][N - 2];
                     serde::de::Error::custom(format!("expected {many} numbers, found {count}{advice}"))
                 })
             }
@@ -184,6 +187,11 @@ pub(super) struct MapScale(pub Vec2);
 #[serde(try_from = "[f64; 2]")]
 pub(super) struct MapOffset(pub Vec2);
 
+/// By how many widths and heights a picture is shifted.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(try_from = "Numbers<2>")]
+pub(super) struct Shift(pub Vec2);
+
 /// An index of refraction.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(try_from = "f64")]
@@ -252,6 +260,17 @@ impl TryFrom<[f64; 2]> for MapOffset {
         // Written so that what is no number fails.
         let some = pair.abs().cmple(Vec2::splat(LARGEST_TRANSFORM)).all();
         some.then_some(MapOffset(pair)).ok_or("expected numbers from -1e6 to 1e6")
+    }
+}
+
+impl TryFrom<Numbers<2>> for Shift {
+    type Error = &'static str;
+    fn try_from(Numbers(numbers): Numbers<2>) -> Checked<Self> {
+        let pair = DVec2::from(numbers).as_vec2();
+        // Written so that what is no number fails.
+        let some = pair.abs().cmple(Vec2::splat(LARGEST_SHIFT)).all();
+        some.then_some(Shift(pair))
+            .ok_or("expected two numbers from -100 to 100: widths of the picture to the right, and heights upwards")
     }
 }
 

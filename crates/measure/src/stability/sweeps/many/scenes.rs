@@ -1,7 +1,7 @@
 //! Scenes of any number of lamps, instances or bounces.
 
 use crate::stability::rooms::{furnace, without_roulette};
-use glam::{Affine3A, Vec3};
+use glam::{Affine3A, Vec2, Vec3};
 use luminaire::scene::build::{add, empty, icosphere, lamp, matte, quad};
 use luminaire::scene::{
     Environment, Estimator, FilmSettings, Integrator, LightSampling, Mesh, Projection, Scene, Sensor, Triangle,
@@ -22,6 +22,7 @@ pub(super) fn city(n: u32, light_sampling: LightSampling) -> Scene {
         up: Vec3::Z,
         projection: Projection::Orthographic { height: 1.0 },
         lens: None,
+        shift: Vec2::ZERO,
     };
     let floor = quad(Vec3::new(0.0, 0.0, side as f32), Vec3::X * side as f32, Vec3::Z * -(side as f32));
     add(&mut scene, floor, matte(Vec3::splat(0.5)), Affine3A::IDENTITY);
