@@ -13,6 +13,7 @@ mod seconds;
 mod sequence;
 mod stats;
 mod summary;
+mod tracing;
 #[cfg(feature = "shaderc")]
 mod watch;
 
@@ -25,6 +26,7 @@ use self::outcome::Outcome;
 use self::progress::Reporter;
 use self::seconds::Seconds;
 use self::sequence::Sequence;
+use self::tracing::{layers, limits, note_renderer};
 use crate::shared::backend_name;
 use crate::shared::film_size::FilmSize;
 use crate::shared::foreseen::{Foreseen, foresee};
@@ -33,9 +35,9 @@ use crate::shared::outputs::Outputs;
 use crate::shared::printing::Notes;
 use crate::shared::tone_name::ToneName;
 use crate::shared::values::Pixel;
-use luminaire::backend::{self, Renderer, Request};
-use luminaire::film::{Aovs, Demand};
-use luminaire::render::{Cropped, End, Limits, Rendered, Tracer, aovs, resume};
+use luminaire::backend::{self, Request};
+use luminaire::film::Demand;
+use luminaire::render::{Cropped, Rendered, resume};
 use luminaire::scene::{Exposure, FilmSettings, Scene};
 use luminaire::{Error, Result};
 use std::path::PathBuf;
@@ -189,34 +191,4 @@ fn trace(
         seconds,
     };
     ending::finish(outcome, pictures, notes)
-}
-
-/// What the camera sees first, where a file is to hold it and the render has come to its end; an interrupt or a failure meanwhile is the render's.
-fn layers(options: &Options, rendered: &mut Rendered, tracer: &mut dyn Tracer) -> Option<Aovs> {
-    if !options.wants_aovs() || matches!(rendered.end, End::Failed(_) | End::Stopped) {
-        return None;
-    }
-    let size = (rendered.film.width, rendered.film.height);
-    match aovs(tracer, size, rendered.film.most_samples(), &interrupts::STOP) {
-        // Samples are complete then, and the files are written without layers.
-        Ok(None) => rendered.end = End::Stopped,
-        Ok(found) => return found,
-        Err(error) => rendered.end = End::Failed(error),
-    }
-    None
-}
-
-/// Notes which backend renders on which device, and why.
-fn note_renderer(renderer: &Renderer, notes: Notes) {
-    let notice = if renderer.notice { "notice: " } else { "" };
-    let driver = if renderer.driver.is_empty() { String::new() } else { format!(", {}", renderer.driver) };
-    notes.note(&format!("{notice}{} on {}{driver}: {}", renderer.backend, renderer.device, renderer.why));
-}
-
-/// What ends the render: options, or the scene's samples a pixel where no option does.
-fn limits(options: &Options, scene: &Scene) -> Limits {
-    let other_limit = options.time.is_some() || options.noise.is_some();
-    let scene_spp = (!other_limit).then_some(scene.settings.spp);
-    let spp = options.samples.as_ref().map(|samples| samples.end).or(options.spp).or(scene_spp);
-    Limits { spp, seconds: options.time, noise: options.noise }
 }

@@ -1,5 +1,7 @@
 //! `--turntable`: a picture for each step of a turn of the camera, of which those that are finished are kept.
 
+use super::checkpoint;
+use super::ending;
 use super::failing_tracer::FailingTracer;
 use super::frame_name::FrameName;
 use super::options::Options;
@@ -8,7 +10,7 @@ use super::outputs::{save_stats, write_frame};
 use super::progress::Reporter;
 use super::seconds::Seconds;
 use super::stats::Stats;
-use super::{checkpoint, ending, layers, limits, note_renderer};
+use super::tracing::{layers, limits, note_renderer};
 use crate::shared::error_line::error_line;
 use crate::shared::exit_codes::{DEVICE_FAILED, INTERRUPTED};
 use crate::shared::foreseen::Foreseen;
