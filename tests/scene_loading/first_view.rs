@@ -264,7 +264,7 @@ fn along_a_corridor_one_looks_from_its_end() {
     assert_eq!(place, "inside, as of a room");
     let p = eye.position;
     assert!(p.x.abs() < 0.8 && p.z.abs() > 8.0 && p.z.abs() < 12.0, "{p}");
-    assert!(eye.towards().z * p.z.signum() > 0.95, "{}", eye.towards());
+    assert!(eye.towards().z * p.z.signum() > 0.9, "{}", eye.towards());
 }
 
 #[test]
