@@ -31,7 +31,7 @@ pub(super) fn simplified(scene: &Scene, unit: f64, to_here: impl Fn(DVec3) -> Ve
     let step = (scene.triangle_count().min(VISITED) as usize).div_ceil(KEPT).max(1);
     let (mut specks, mut number) = (Vec::new(), 0);
     for_triangles(scene, unit, &mut |corners, clear| {
-        if number % step == 0 {
+        if usize::is_multiple_of(number, step) {
             specks.push((corners.map(to_here), clear));
         }
         number += 1;

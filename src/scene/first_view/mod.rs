@@ -155,7 +155,7 @@ fn thinned(points: &impl Fn(&mut dyn FnMut(DVec3))) -> Vec<DVec3> {
     let step = usize::div_ceil(count, TRIAL_POINTS).max(1);
     let (mut thinned, mut number) = (Vec::new(), 0);
     points(&mut |p| {
-        if number % step == 0 {
+        if usize::is_multiple_of(number, step) {
             thinned.push(p);
         }
         number += 1;

@@ -125,7 +125,7 @@ impl Subject<'_> {
             if !(open(side) && around && (shut(opposite) || open(opposite))) {
                 continue;
             }
-            let sign = if side % 2 == 0 { 1.0 } else { -1.0 };
+            let sign = if side.is_multiple_of(2) { 1.0 } else { -1.0 };
             let level = self.frame.col(axis) * sign;
             let straight = self.try_out(level);
             if half[axis] > DEEP * (half.y * half[across]).sqrt() {
@@ -150,7 +150,7 @@ impl Subject<'_> {
     /// How open a side of the bounds is, in the order +x, -x, +y, -y, +z, -z of the frame: the part of the rays straight into it that come further
     /// than half way, and the part that is stopped at once.
     fn openness(&self, side: usize) -> [f64; 2] {
-        let (axis, sign) = (side / 2, if side % 2 == 0 { 1.0 } else { -1.0 });
+        let (axis, sign) = (side / 2, if side.is_multiple_of(2) { 1.0 } else { -1.0 });
         let inward = self.frame.col(axis) * -sign;
         let (u, v) = (self.frame.col((axis + 1) % 3), self.frame.col((axis + 2) % 3));
         let extent = |direction: DVec3| direction.abs().dot(self.solid.half.as_dvec3());

@@ -1,6 +1,6 @@
 //! The triangles of a scene as the search for a view sees them: in a unit of their own, few enough to be looked at quickly, in a tree.
 
-use super::lattice::{Facet, simplified};
+use super::lattice::{Facet, Mix, simplified};
 use super::visit::for_triangles;
 use crate::scene::Scene;
 use glam::{DVec3, Vec3A};
@@ -9,10 +9,14 @@ use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 use obvhs::ray::{Ray, RayHit};
 use obvhs::rt_triangle::RtTriangle;
 use std::cell::Cell;
+use std::collections::HashMap;
+use std::hash::BuildHasherDefault;
 
 /// Scenes of at most so many triangles are looked at as they are.
 const EXACT: u64 = 150_000;
 
+/// Triangles that are kept of those with one box.
+const MOST_ALIKE: u32 = 16;
 /// Tests of a triangle in all: ordinary scenes need a tenth.
 const MOST_TESTED: u32 = 40_000_000;
 
@@ -59,7 +63,14 @@ impl Solid {
         } else {
             kept = simplified(scene, unit, to_here);
         }
-        kept.retain(|([a, b, c], _)| (*b - *a).cross(*c - *a) != Vec3A::ZERO);
+        // Of triangles with one box a few stand for all: a tree over thousands of them takes minutes.
+        let mut boxes: HashMap<[[u32; 3]; 2], u32, BuildHasherDefault<Mix>> = HashMap::default();
+        kept.retain(|([a, b, c], _)| {
+            let corners = [a.min(*b).min(*c), a.max(*b).max(*c)];
+            let alike = boxes.entry(corners.map(|p| p.to_array().map(f32::to_bits))).or_default();
+            *alike += 1;
+            *alike <= MOST_ALIKE && (*b - *a).cross(*c - *a) != Vec3A::ZERO
+        });
         let triangles: Vec<RtTriangle> = kept.iter().map(|([a, b, c], _)| RtTriangle::new(*a, *b, *c)).collect();
         let clear = kept.iter().map(|(_, clear)| *clear).collect();
         if triangles.is_empty() {
