@@ -4,7 +4,7 @@ use crate::scene::{Scene, widen};
 use glam::DVec3;
 
 /// The model is looked at from straight above on a grid of so many cells a side.
-const CELLS: usize = 64;
+const CELLS: usize = 32;
 /// What is less than this share of the model's largest extent is flat.
 const FLAT: f64 = 1e-3;
 /// What is no higher than this share of the model's height is near its bottom.
