@@ -2,7 +2,7 @@
 
 use super::*;
 use glam::{DVec3, Vec3};
-use luminaire::scene::{Choices, EnvironmentImage, Sky, Up, load_with};
+use luminaire::scene::{Choices, EnvironmentImage, Exposure, Luminaire, Sky, Up, load_with};
 use std::f64::consts::PI;
 
 /// A box from (0, 0, 0) to (x, y, z) as six quads, the corners numbered from `first`.
@@ -77,7 +77,9 @@ fn a_bare_model_stands_on_a_ground_under_the_studio_sky() {
             "it is large, but not so that precision suffers"
         );
         assert_eq!(scene.warnings, Vec::<String>::new());
-        let [note] = &scene.notes[..] else { panic!("{:?}", scene.notes) };
+        let [note, place] = &scene.notes[..] else { panic!("{:?}", scene.notes) };
+        assert!(place.starts_with("the camera stands "), "{place}");
+        assert_eq!(scene.settings.exposure, Exposure::Stops(0.0));
         assert!(note.contains("studio sky") && note.contains(&format!("ground at y = {y:.4}")[..16]), "{note} {y}");
         assert!(note.contains("luminaire scene"), "{note}");
     }
@@ -155,7 +157,9 @@ fn each_choice_can_be_another() {
     // A lamp alone lights its model, and may have a sky and a ground.
     let lamp = with_mtl("newmtl m\nKe 1 1 1\n");
     let scene = with(&lamp, "mesh.obj", &Choices { ground: Some(true), ..none.clone() });
-    assert!(scene.environment.is_none() && scene.ground.is_some());
+    assert!(scene.environment.is_some_and(|sky| sky.image.is_none()) && scene.ground.is_some());
+    let scene = with(&lamp, "mesh.obj", &Choices { sky: Some(Sky::None), ..none.clone() });
+    assert!(scene.environment.is_none() && scene.ground.is_none());
     let scene = with(&lamp, "mesh.obj", &Choices { sky: Some(Sky::Studio), ..none });
     assert!(scene.environment.is_some() && scene.ground.is_some());
 }
@@ -268,6 +272,7 @@ fn choices_change_a_scene_file() {
     for (choices, key) in [
         (Choices { smooth: Some(30.0), ..none.clone() }, "`smooth`"),
         (Choices { up: Some(Up::Z), ..none.clone() }, "`rotate = [-90, 0, 0]`"),
+        (Choices { fill: Some(true), ..none.clone() }, "[[luminaire]]"),
     ] {
         let error = load_with(&folder.path("scene.toml"), &choices).unwrap_err();
         assert!(error.exit_code() == 2 && error.to_string().contains(key), "{error}");
@@ -290,10 +295,50 @@ fn a_lamp_that_lights_nothing_that_is_seen_is_not_enough() {
     let closed = room(&walls);
     assert!(closed.environment.is_some() && closed.notes[0].contains("beside what emits in it"), "{:?}", closed.notes);
     let open = room(&walls.replace(front, ""));
-    assert!(open.environment.is_none() && open.notes[0].contains("lit by what emits in it"), "{:?}", open.notes);
+    // Not on black: a faint grey, of 0.3 times half the lamp's radiance by its share of all areas (1 in 46), to two digits.
+    let faint = |scene: &Scene| scene.environment.as_ref().map(|sky| (sky.radiance, sky.image.is_some()));
+    assert_eq!(faint(&open), Some((Vec3::splat(0.016), false)), "{:?}", open.notes);
+    assert!(open.notes[0].contains("before a faint grey of radiance 0.016, no ground"), "{:?}", open.notes);
+    assert!(open.luminaires.is_empty() && open.settings.exposure == Exposure::Auto);
     // Off the room, beside a wall.
     let beside = room("v -1 0 0\nv 4 0 0\nv 4 0 3\nv -1 0 3\nf -4 -1 -2 -3\n");
-    assert!(beside.environment.is_none(), "{:?}", beside.notes);
+    assert!(faint(&beside).is_some_and(|(_, image)| !image), "{:?}", beside.notes);
+}
+
+/// A room that no lamp lights gets a lamp at the camera, which stands inside; with lamps it has none, and no sky either.
+#[test]
+fn a_dark_room_gets_a_lamp_at_the_camera() {
+    let corners = |low: [f32; 3], high: [f32; 3]| {
+        let mut text = String::new();
+        for i in 0..8 {
+            let at = |axis: usize| if i >> axis & 1 == 1 { high[axis] } else { low[axis] };
+            text += &format!("v {} {} {}\n", at(0), at(1), at(2));
+        }
+        text
+    };
+    // Seen from inside: walls face inwards.
+    let walls = "f 1 3 7 5\nf 2 6 8 4\nf 1 5 6 2\nf 3 4 8 7\nf 1 2 4 3\nf 5 7 8 6\n";
+    let table = "f -8 -4 -2 -6\nf -7 -5 -1 -3\nf -8 -7 -3 -4\nf -6 -2 -1 -5\nf -8 -6 -5 -7\nf -4 -3 -1 -2\n";
+    let room = corners([0.0; 3], [6.0, 3.0, 5.0]) + walls + &corners([1.0, 0.0, 1.0], [2.0, 0.8, 2.0]) + table;
+    let dark = obj(&room).load("mesh.obj");
+    let Some(Luminaire::Point { position, intensity }) = dark.luminaires.first().cloned() else {
+        panic!("{:?}", dark.notes)
+    };
+    assert_eq!(position, dark.sensor.position);
+    // 0.6 of irradiance a few units away.
+    assert!((2.0..30.0).contains(&intensity.x) && intensity == Vec3::splat(intensity.x), "{intensity}");
+    assert!(dark.notes[0].contains("a lamp at the camera") && dark.notes[1].contains("inside"), "{:?}", dark.notes);
+    assert_eq!(dark.settings.exposure, Exposure::Auto);
+    let off = with(&obj(&room), "mesh.obj", &Choices { fill: Some(false), ..Choices::default() });
+    assert!(off.luminaires.is_empty());
+    let lamp = "usemtl lamp\nv 2 2.9 2\nv 4 2.9 2\nv 4 2.9 3\nv 2 2.9 3\nf -4 -3 -2 -1\n";
+    let lit = format!("mtllib mesh.mtl\n{room}{lamp}");
+    let lit = obj(lit).with("mesh.mtl", "newmtl lamp\nKe 5 5 5\n").load("mesh.obj");
+    assert!(
+        lit.luminaires.is_empty() && lit.environment.is_none() && lit.notes[1].contains("inside"),
+        "{:?}",
+        lit.notes
+    );
 }
 
 /// An object that is a lamp twice goes, and the ground behind it keeps its name.

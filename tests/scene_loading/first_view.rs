@@ -117,7 +117,7 @@ fn picture(scene: &Scene, eye: &Eye) -> Vec<Option<(f64, bool)>> {
 }
 
 fn view(scene: &Scene) -> (Eye, String) {
-    let FirstView { sensor, place } = scene.first_view(Vec3::Y);
+    let FirstView { sensor, place, .. } = scene.first_view(Vec3::Y);
     (Eye::of(scene, &sensor), place)
 }
 

@@ -70,7 +70,7 @@ fn choices() -> Vec<Choices> {
     let none = Choices::default();
     vec![
         none.clone(),
-        Choices { up: Some(Up::Z), smooth: Some(180.0), ..none.clone() },
+        Choices { up: Some(Up::Z), smooth: Some(180.0), fill: Some(true), ..none.clone() },
         Choices { sky: Some(Sky::Even(Vec3::new(0.1, 0.2, 1.0 / 3.0))), ground: Some(false), ..none.clone() },
         Choices { sky: Some(Sky::None), ground: Some(true), smooth: Some(0.0), ..none },
     ]

@@ -106,7 +106,10 @@ fn a_camera_from_a_file() {
     assert!(runs.bytes("a.png") == runs.bytes("c.png") && runs.bytes("b.png") != runs.bytes("c.png"));
     // The camera of another scene, of which nothing else counts; and no picture in its place.
     let said = runs.render("room.toml --camera same.toml -o a.png");
-    assert!(said.contains("only its camera and its exposure count here") && said.contains("[film]"), "{said}");
+    assert!(
+        said.contains("only its camera and how its pictures are shown count here") && said.contains("[film]"),
+        "{said}"
+    );
     assert!(runs.bytes("a.png") == runs.bytes("b.png"));
     // A scene without a camera, and a bare mesh.
     runs.0.write("none.toml", REST);

@@ -221,7 +221,7 @@ fn the_window_shows_what_render_writes_and_obeys() {
     view.xdotool("mousemove 60 60 mousedown 1 mousemove 90 50 mousemove 100 45 mouseup 1 key c");
     let snippet = std::fs::read_to_string(view.file("cornell-camera-1.toml")).unwrap();
     assert!(snippet.starts_with("[sensor]\n") && !snippet.contains("-800.0]"), "{snippet}");
-    assert!(snippet.ends_with("[render]\nexposure = 1.0\n"), "{snippet}");
+    assert!(snippet.ends_with("[render]\nexposure = 1.0\ntone = \"srgb\"\n"), "{snippet}");
     let object = "[[object]]\nmesh = \"cornell.obj\"\n";
     let object = object.replace("cornell.obj", &CORNELL.replace(".toml", ".obj"));
     std::fs::write(folder.join("turned.toml"), snippet.clone() + &object).unwrap();

@@ -43,6 +43,8 @@ pub struct FirstView {
     pub sensor: Sensor,
     /// Where it stands, to follow "the camera stands": "in front, a little to the right and above".
     pub place: String,
+    /// Whether it stands inside of the scene, as of a room: walls keep out what is around.
+    pub inside: bool,
 }
 
 impl Scene {
@@ -77,9 +79,12 @@ impl Scene {
             lens: None,
             shift: Vec2::ZERO,
         };
-        FirstView { sensor, place }
+        FirstView { sensor, inside: place == INSIDE, place }
     }
 }
+
+/// Where a camera inside stands.
+const INSIDE: &str = "inside, as of a room";
 
 /// Right, up and front.
 fn frame(up: DVec3) -> DMat3 {
@@ -125,7 +130,7 @@ fn search<P: Fn(&mut dyn FnMut(DVec3))>(whole: &Subject, points: &impl Fn(Bounds
     if let Some((towards, place)) = whole.open_side() {
         return (whole.eye(towards, all), place.into());
     }
-    let room = || inside::view(solid, frame, aspect).map(|eye| (eye, "inside, as of a room".into()));
+    let room = || inside::view(solid, frame, aspect).map(|eye| (eye, INSIDE.into()));
     let things = surroundings::within(solid);
     let is_tiny = things.is_some_and(|bounds| bounds.extent() < TINY);
     if let Some(room) = (!is_tiny).then(room).flatten() {

@@ -6,7 +6,8 @@ use super::loader::Loader;
 use super::{environment, footing, lamplight, obj};
 use crate::Result;
 use crate::scene::{
-    Estimator, FilmSettings, Filter, FirstView, Integrator, Object, Projection, RenderSettings, Scene, Sensor, widen,
+    Estimator, Exposure, FilmSettings, Filter, FirstView, Integrator, Luminaire, Object, Projection, RenderSettings,
+    Scene, Sensor, widen,
 };
 use glam::{Affine3A, DAffine3, DMat3, DVec3, Vec2, Vec3};
 use std::path::Path;
@@ -16,6 +17,12 @@ const FOV: f32 = 40.0;
 /// A scene whose emitting triangles have less than this share of its area is not meant to be lit by them alone: they glow, as
 /// lava in a landscape does. The lamp of a Cornell box has seven times as much.
 const LEAST_EMITTING: f64 = 1e-3;
+/// But smaller ones are lamps if they are so bright that what they light has this radiance: half a percent of what is white in a PNG.
+const LEAST_LEVEL: f64 = 5e-3;
+/// The faint grey around a model that its lamps light, over the radiance of what they light.
+const FAINT: f64 = 0.3;
+/// Irradiance of the lamp at the camera on what faces it at the middle distance: grey has a radiance of a quarter of the studio sky's horizon there.
+const FILL: f64 = 0.6;
 /// How the note of where the camera stands begins; the place follows.
 pub(super) const FIRST_VIEW: &str = "the camera stands ";
 /// From z up to y up, to the last digit: x stays, z becomes y, y becomes -z.
@@ -38,6 +45,8 @@ pub(super) struct BareMesh {
     pub smooth: Option<f32>,
     /// Which axis was up.
     pub up: Up,
+    /// Whether there is a lamp at the camera.
+    pub fill: bool,
 }
 
 /// Loads a bare OBJ, as `choices` say or as suits it.
@@ -87,27 +96,42 @@ pub(super) fn load(path: &Path, choices: &Choices) -> Result<BareMesh> {
         notes: Vec::new(),
         ground: None,
     };
-    let FirstView { sensor, place } = scene.first_view(Vec3::Y);
+    let FirstView { sensor, place, inside } = scene.first_view(Vec3::Y);
     scene.sensor = sensor;
     // As a scene file can say it in the coordinates of the files.
     for point in [&mut scene.sensor.position, &mut scene.sensor.target] {
         *point = (point.as_dvec3() + origin - origin).as_vec3();
     }
-    let emitting = emitting_share(&scene);
-    let lit = emitting >= LEAST_EMITTING && (choices.sky.is_some() || lamplight::reaches_what_is_seen(&scene));
-    let sky = choices.sky.clone().unwrap_or(if lit { Sky::None } else { Sky::Studio });
+    let (emitting, level) = emitting_share(&scene);
+    let lit = (emitting >= LEAST_EMITTING || level >= LEAST_LEVEL) && lamplight::reaches_what_is_seen(&scene);
+    let sky = choices.sky.clone().unwrap_or_else(|| match (lit, inside) {
+        (false, _) => Sky::Studio,
+        (true, true) => Sky::None,
+        (true, false) => faint(level),
+    });
     scene.environment = environment::of(&sky, &mut scene.files, &mut scene.warnings)?;
     let height = ground::height(&scene);
     let ground = choices.ground.unwrap_or_else(|| {
         let above = f64::from(scene.sensor.position.y) + origin.y > height;
-        scene.environment.is_some() && above && !footing::brings_its_ground(&scene)
+        let faint = lit && choices.sky.is_none();
+        scene.environment.is_some() && !faint && above && !footing::brings_its_ground(&scene)
     });
     let ground = ground.then_some(height);
     if ground.is_some() {
         ground::add(&mut scene, &Ground { height: ground, ..Ground::default() });
     }
+    let fill = choices.fill.unwrap_or(inside && !lit);
+    if fill {
+        let distance = lamplight::distance_of_what_is_seen(&scene);
+        let intensity = Vec3::splat(two_digits(FILL * distance * distance));
+        scene.luminaires.push(Luminaire::Point { position: scene.sensor.position, intensity });
+    }
+    // From outside the studio sky is as bright as a studio is; elsewhere nobody knows.
+    if sky == Sky::Studio && !inside && emitting == 0.0 {
+        scene.settings.exposure = Exposure::Stops(0.0);
+    }
     scene.warnings.extend(scene.dark_because());
-    let mut bare = BareMesh { scene, loader, sky, ground, smooth, up };
+    let mut bare = BareMesh { scene, loader, sky, ground, smooth, up, fill };
     let note = bare.note(emitting, choices);
     bare.scene.notes.extend([note, format!("{FIRST_VIEW}{place}")]);
     Ok(bare)
@@ -118,12 +142,17 @@ impl BareMesh {
     fn note(&self, emitting: f64, choices: &Choices) -> String {
         let why = match emitting {
             0.0 => String::new(),
-            few if few < LEAST_EMITTING => format!(" (only {} of its area emits)", percent(few)),
+            few if few < LEAST_EMITTING && choices.sky.is_none() => {
+                format!(" (only {} of its area emits)", percent(few))
+            }
             _ => " beside what emits in it".into(),
         };
         let light = match &self.sky {
             Sky::Studio => format!("studio sky{why}"),
             Sky::Image(path) => format!("the sky of {}", path.display()),
+            Sky::Even(radiance) if choices.sky.is_none() => {
+                format!("lit by what emits in it, before a faint grey of radiance {}", radiance.x)
+            }
             Sky::Even(radiance) => format!("a sky of radiance {} {} {}", radiance.x, radiance.y, radiance.z),
             Sky::None if emitting > 0.0 => "lit by what emits in it".into(),
             Sky::None => "no sky".into(),
@@ -133,12 +162,13 @@ impl BareMesh {
             0.0 => ", normals flat".into(),
             _ => format!(", normals smooth below {degrees} degrees"),
         });
+        let fill = if self.fill { ", a lamp at the camera" } else { "" };
         let up = if self.up == Up::Z { ", turned from z up to y up" } else { "" };
         let name = for_a_shell(&self.scene.path.to_string_lossy());
         let stem = self.scene.path.file_stem().unwrap_or_default().to_string_lossy();
         let file = for_a_shell(&format!("{stem}.toml"));
         let command = format!("luminaire scene {name}{} > {file}", options(choices));
-        format!("bare model: {light}, {ground}{smooth}{up}; `{command}` writes that down, to be changed")
+        format!("bare model: {light}{fill}, {ground}{smooth}{up}; `{command}` writes that down, to be changed")
     }
 }
 
@@ -153,7 +183,8 @@ fn options(choices: &Choices) -> String {
     let ground = choices.ground.map(|on| if on { "on" } else { "off" }.to_owned());
     let smooth = choices.smooth.map(|degrees| degrees.to_string());
     let up = choices.up.map(|up| if up == Up::Z { "z" } else { "y" }.to_owned());
-    let given = [("sky", sky), ("ground", ground), ("smooth", smooth), ("up", up)];
+    let fill = choices.fill.map(|on| if on { "on" } else { "off" }.to_owned());
+    let given = [("sky", sky), ("ground", ground), ("smooth", smooth), ("up", up), ("fill", fill)];
     given.into_iter().filter_map(|(name, value)| Some(format!(" --{name} {}", value?))).collect()
 }
 
@@ -163,9 +194,10 @@ fn for_a_shell(word: &str) -> String {
     if word.chars().all(plain) { word.to_owned() } else { format!("'{}'", word.replace('\'', "'\\''")) }
 }
 
-/// The emitting triangles' share of the area of all triangles, from 0 to 1.
-fn emitting_share(scene: &Scene) -> f64 {
-    let (mut emitting, mut all) = (0.0, 0.0);
+/// The emitting triangles' share of the area of all triangles, from 0 to 1, and about the radiance of what they light: as if all surfaces were grey
+/// and got the same light.
+fn emitting_share(scene: &Scene) -> (f64, f64) {
+    let (mut emitting, mut all, mut power) = (0.0, 0.0, 0.0);
     for object in &scene.objects {
         let to_world = widen(object.object_to_world);
         let mesh = &scene.meshes[object.mesh as usize];
@@ -173,12 +205,28 @@ fn emitting_share(scene: &Scene) -> f64 {
             let [a, b, c] = triangle.vertices.map(|v| to_world.transform_point3(mesh.positions[v as usize].as_dvec3()));
             let area = 0.5 * (b - a).cross(c - a).length();
             all += area;
-            if scene.material_of(object, triangle).emission != Vec3::ZERO {
+            let emission = scene.material_of(object, triangle).emission;
+            if emission != Vec3::ZERO {
                 emitting += area;
+                power += area * f64::from(emission.element_sum() / 3.0);
             }
         }
     }
-    if emitting > 0.0 { emitting / all } else { 0.0 }
+    if emitting > 0.0 { (emitting / all, 0.5 * power / all) } else { (0.0, 0.0) }
+}
+
+/// What is behind a model whose lamps give its surfaces about this radiance: not black, and no light to speak of.
+fn faint(level: f64) -> Sky {
+    match two_digits(FAINT * level) {
+        0.0 => Sky::None,
+        radiance => Sky::Even(Vec3::splat(radiance)),
+    }
+}
+
+/// Rounded to two digits, for people.
+fn two_digits(number: f64) -> f32 {
+    let rounded: f32 = format!("{number:.1e}").parse().unwrap_or(0.0);
+    if rounded.is_finite() { rounded } else { 0.0 }
 }
 
 /// A small share in words.

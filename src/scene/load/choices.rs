@@ -11,7 +11,8 @@ pub(super) const SMOOTH: f32 = 40.0;
 /// Choices in place of what a file says. `None` is the file's own word; a bare model has none, and gets what suits it.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Choices {
-    /// Light from all around. A bare model gets the studio sky if nothing in it emits, or next to nothing.
+    /// Light from all around. A bare model gets the studio sky if nothing in it emits, or next to nothing; one that its own lamps light, a faint
+    /// grey around it, unless the camera stands inside.
     pub sky: Option<Sky>,
     /// Whether there is a ground under the model. A bare model that has a sky gets one unless it brings its own.
     pub ground: Option<bool>,
@@ -19,6 +20,8 @@ pub struct Choices {
     pub smooth: Option<f32>,
     /// Bare models only: the axis that points up in the file; y if nothing is said.
     pub up: Option<Up>,
+    /// Bare models only: whether there is a lamp at the camera. There is one where the camera stands in a room that no lamp lights.
+    pub fill: Option<bool>,
 }
 
 /// Light from all around.
@@ -53,6 +56,9 @@ impl Choices {
             Choices { smooth: Some(_), .. } => ("--smooth", "an [[object]] of it has the key `smooth`, in degrees"),
             Choices { up: Some(_), .. } => {
                 ("--up", "an [[object]] of it is turned from z up to y up by `rotate = [-90, 0, 0]`")
+            }
+            Choices { fill: Some(_), .. } => {
+                ("--fill", "a lamp at the camera is a [[luminaire]] of it, kind = \"point\"")
             }
             _ => return Ok(()),
         };

@@ -1,4 +1,4 @@
-//! Whether the lamps of a model light what its camera sees: from outside, a closed room with a lamp is black.
+//! Whether the lamps of a model light what its camera sees (from outside, a closed room with a lamp is black), and how far away that is.
 
 use crate::scene::{Projection, Scene, widen};
 use glam::DVec3;
@@ -23,12 +23,38 @@ struct Face {
 
 /// Whether enough of what the camera sees, lamps left out, has a lamp in sight; also where nothing else is seen, and where it is not found out.
 pub(super) fn reaches_what_is_seen(scene: &Scene) -> bool {
-    let Projection::Perspective { fov } = scene.sensor.projection else { return true };
-    if scene.triangle_count() > MOST_TRIANGLES {
-        return true;
-    }
-    let faces = faces(scene);
+    let Some(faces) = faces(scene) else { return true };
     let lamps = lamp_points(&faces);
+    let seen: Vec<bool> = seen(scene, &faces)
+        .into_iter()
+        .filter(|seen| !seen.emits)
+        .par_bridge()
+        .map(|seen| lamps.iter().any(|lamp| is_free(&faces, seen.point, *lamp)))
+        .collect();
+    let lit = seen.iter().filter(|lit| **lit).count();
+    seen.is_empty() || lit as f64 >= LEAST_LIT * seen.len() as f64
+}
+
+/// The middle one of the distances of what the camera sees; that of its target where nothing is seen, or it is not found out.
+pub(super) fn distance_of_what_is_seen(scene: &Scene) -> f64 {
+    let eye = scene.sensor.position.as_dvec3();
+    let mut distances: Vec<f64> = faces(scene)
+        .map(|faces| seen(scene, &faces).iter().map(|seen| seen.point.distance(eye)).collect())
+        .unwrap_or_default();
+    distances.sort_by(f64::total_cmp);
+    distances.get(distances.len() / 2).copied().unwrap_or(scene.sensor.target.as_dvec3().distance(eye))
+}
+
+/// What one ray of the camera meets.
+struct Seen {
+    /// Off the surface, towards the eye.
+    point: DVec3,
+    emits: bool,
+}
+
+/// What the camera sees, in some of its directions.
+fn seen(scene: &Scene, faces: &[Face]) -> Vec<Seen> {
+    let Projection::Perspective { fov } = scene.sensor.projection else { return Vec::new() };
     let eye = scene.sensor.position.as_dvec3();
     let forward = (scene.sensor.target.as_dvec3() - eye).normalize_or_zero();
     let right = forward.cross(scene.sensor.up.as_dvec3()).normalize_or_zero();
@@ -38,18 +64,17 @@ pub(super) fn reaches_what_is_seen(scene: &Scene) -> bool {
     let seen = (0..RAYS * RAYS).into_par_iter().filter_map(|ray| {
         let share = |i: u32| 2.0 * (f64::from(i) + 0.5) / f64::from(RAYS) - 1.0;
         let direction = forward + half * (aspect * share(ray % RAYS) * right + share(ray / RAYS) * up);
-        let (face, distance) = nearest(&faces, eye, direction)?;
-        // Towards the eye, off the surface that was met.
-        let point = eye + distance * (1.0 - OFF) * direction;
-        (!face.emits).then(|| lamps.iter().any(|lamp| is_free(&faces, point, *lamp)))
+        let (face, distance) = nearest(faces, eye, direction)?;
+        Some(Seen { point: eye + distance * (1.0 - OFF) * direction, emits: face.emits })
     });
-    let seen: Vec<bool> = seen.collect();
-    let lit = seen.iter().filter(|lit| **lit).count();
-    seen.is_empty() || lit as f64 >= LEAST_LIT * seen.len() as f64
+    seen.collect()
 }
 
-/// What stops light, and what emits it.
-fn faces(scene: &Scene) -> Vec<Face> {
+/// What stops light, and what emits it; none of models that are too large to find it out.
+fn faces(scene: &Scene) -> Option<Vec<Face>> {
+    if scene.triangle_count() > MOST_TRIANGLES {
+        return None;
+    }
     let mut faces = Vec::new();
     for object in &scene.objects {
         let to_world = widen(object.object_to_world);
@@ -64,7 +89,7 @@ fn faces(scene: &Scene) -> Vec<Face> {
             }
         }
     }
-    faces
+    Some(faces)
 }
 
 /// Points on lamps, evenly over their area.

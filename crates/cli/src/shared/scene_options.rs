@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Clone, Default, clap::Args)]
 pub struct SceneOptions {
     /// Light from all around: a latitude-longitude image (.hdr, .exr, ...), the same radiance from everywhere, the built-in grey sky with a soft
-    /// key light, or none [default: the scene file's; of an OBJ in which less than 0.1 % of the area emits: studio].
+    /// key light, or none [default: the scene file's; of an OBJ in which less than 0.1 % of the area emits: studio, and of one that its lamps light
+    /// a faint grey around it].
     #[arg(long, value_name = "FILE|R,G,B|studio|none", value_parser = sky, help_heading = "Scene")]
     sky: Option<Sky>,
     /// A grey ground under the model [default: the scene file's; of an OBJ under a sky: on, unless it brings its own].
@@ -21,12 +22,15 @@ pub struct SceneOptions {
     /// The axis of an OBJ that points up. Programs for buildings, maps and 3D printers mostly write z [default: y].
     #[arg(long, value_name = "y|z", value_parser = up, help_heading = "Scene")]
     up: Option<Up>,
+    /// A lamp at the camera of an OBJ [default: on where the camera stands in a room that no lamp lights].
+    #[arg(long, value_name = "on|off", value_parser = on_or_off, help_heading = "Scene")]
+    fill: Option<bool>,
 }
 
 impl SceneOptions {
     /// As the library wants them.
     pub fn choices(&self) -> Choices {
-        Choices { sky: self.sky.clone(), ground: self.ground, smooth: self.smooth, up: self.up }
+        Choices { sky: self.sky.clone(), ground: self.ground, smooth: self.smooth, up: self.up, fill: self.fill }
     }
 
     /// Loads a scene with them.
@@ -71,7 +75,7 @@ fn on_or_off(text: &str) -> Result<bool, String> {
     match text {
         "on" => Ok(true),
         "off" => Ok(false),
-        _ => Err("expected on or off; its height, size and albedo are said by [ground] in a scene file".into()),
+        _ => Err("expected on or off; more is said in a scene file, which `luminaire scene` writes".into()),
     }
 }
 

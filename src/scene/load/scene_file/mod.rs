@@ -7,7 +7,7 @@ mod words;
 use super::bare_mesh::{self, BareMesh, Z_UP};
 use super::choices::{Choices, Sky, Up};
 use super::{finish, ground, with_what_is_there};
-use crate::scene::{Projection, Scene};
+use crate::scene::{Luminaire, Projection, Scene};
 use crate::{Error, Result};
 use glam::Vec3;
 use std::path::Path;
@@ -53,7 +53,7 @@ pub fn scene_file(path: &Path, choices: &Choices, folder: &Path) -> Result<Scene
     text += &groups::comments(path)?;
     text += "\n";
     text += &materials::tables(&bare.scene, &bare.loader.drafts, folder)?;
-    text += LUMINAIRES;
+    text += &luminaires(&bare);
     Ok(SceneFile { text, scene: bare.scene })
 }
 
@@ -255,6 +255,22 @@ fn object(bare: &BareMesh, path: &Path, folder: &Path) -> Result<String> {
 }
 
 const IDENTITY: &str = "[[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]]";
+
+/// The lamp at the camera, if there is one, and what others there may be.
+fn luminaires(bare: &BareMesh) -> String {
+    let mut text = String::new();
+    for luminaire in &bare.scene.luminaires {
+        if let Luminaire::Point { position, intensity } = luminaire {
+            text += "\n# The lamp at the camera.\n[[luminaire]]\n";
+            text += &keys(&[
+                ("kind", "\"point\"".into(), ""),
+                ("position", point(*position, bare.scene.origin), ""),
+                ("intensity", triple(*intensity), "radiant intensity, RGB"),
+            ]);
+        }
+    }
+    text + LUMINAIRES
+}
 
 const LUMINAIRES: &str = "
 # Luminaires without an area, as many as you like; one with an area is a mesh whose material emits.

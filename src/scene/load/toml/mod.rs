@@ -46,7 +46,7 @@ impl File<'_> {
     }
 
     fn build(&self, mut file: SceneFile, choices: &Choices) -> Result<Scene> {
-        let Choices { sky, ground, smooth: _, up: _ } = choices;
+        let Choices { sky, ground, smooth: _, up: _, fill: _ } = choices;
         if sky.is_some() {
             file.environment = None;
         }
@@ -132,7 +132,7 @@ impl File<'_> {
         scene.sensor = match scene.cameras.first() {
             Some(camera) => camera.sensor.clone(),
             None => {
-                let FirstView { sensor, place } = scene.first_view(Vec3::Y);
+                let FirstView { sensor, place, inside: _ } = scene.first_view(Vec3::Y);
                 scene.warnings.push(self.warning(&format!("{NO_SENSOR}{place}")));
                 sensor
             }
