@@ -15,7 +15,7 @@ impl Film {
     /// [`Development`], and changes a PNG only.
     ///
     /// # Errors
-    /// [`Error::Usage`](crate::Error::Usage) for an unknown ending, or a picture with alpha as HDR, [`Error::Write`](crate::Error::Write) if the system refuses; then nothing has changed at `path`.
+    /// [`Error::Usage`] for an unknown ending, or a picture with alpha as HDR, [`Error::Write`] if the system refuses; then nothing has changed at `path`.
     pub fn save(&self, path: &Path, how: impl Into<Development>) -> Result<()> {
         match Format::of(path)? {
             Format::Exr => self.save_exr(path, vec![], vec![], |_| Ok(())),
@@ -38,7 +38,7 @@ impl Film {
     /// Writes an EXR picture with the layers of its AOVs ([`Aovs::channels`]) and the number of samples, `samples`.
     ///
     /// # Errors
-    /// [`Error::Write`](crate::Error::Write) if the system refuses; then nothing has changed at `path`.
+    /// [`Error::Write`] if the system refuses; then nothing has changed at `path`.
     pub fn save_with_aovs(&self, path: &Path, aovs: &Aovs) -> Result<()> {
         self.save_exr(path, self.with_samples(aovs), vec![], |_| Ok(()))
     }
@@ -66,7 +66,7 @@ impl Film {
     /// Writes an EXR picture with further channels and attributes; `finish` may still change the file.
     ///
     /// # Errors
-    /// [`Error::Write`](crate::Error::Write) if the system refuses; then nothing has changed at `path`.
+    /// [`Error::Write`] if the system refuses; then nothing has changed at `path`.
     pub(crate) fn save_exr(
         &self,
         path: &Path,
