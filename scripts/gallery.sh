@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Renders the pictures of docs/gallery.md from scenes/, with the program that `make build` made.
 #
-#   scripts/gallery.sh                     all of them into docs/images/: about five minutes on two idle cores without a GPU
+#   scripts/gallery.sh                     all of them into docs/images/: about twenty minutes on two idle cores without a GPU
 #   scripts/gallery.sh [-o FOLDER] NAME... only some, by the name of the picture, perhaps into another folder
 #
 # Other options of `luminaire render` may be put into GALLERY_OPTIONS, for example GALLERY_OPTIONS="--backend cpu".
@@ -13,6 +13,8 @@ program=${CARGO_TARGET_DIR:-target}/release/luminaire
 # name of the picture, scene, width, samples a pixel, other options
 pictures() {
     cat <<'END'
+still-life             still-life/still-life.toml    1280 1024
+bare                   shapes/knot.obj               400 256
 cornell                cornell/cornell.toml          512 512
 simple                 simple/simple.toml            400 16
 shadows                shadows/shadows.toml          400 192
