@@ -32,7 +32,7 @@ pub use estimator::{
     AreaSampling, Directions, Estimator, EstimatorChanges, Extinction, Integrator, LightSampling, PRESETS,
 };
 pub use filter::Filter;
-pub use first_view::FirstView;
+pub use first_view::{FirstView, Side};
 pub use load::{Choices, SceneFile, Sky, Up, load, load_with, scene_file, use_camera};
 pub use luminaire::Luminaire;
 pub use luminaire_table::{EmissiveTriangle, LuminaireTable, SampledLuminaire};

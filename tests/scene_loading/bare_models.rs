@@ -2,7 +2,7 @@
 
 use super::*;
 use glam::{DVec3, Vec3};
-use luminaire::scene::{Choices, EnvironmentImage, Exposure, Luminaire, Sky, Up, load_with};
+use luminaire::scene::{Choices, EnvironmentImage, Exposure, Luminaire, Side, Sky, Up, load_with};
 use std::f64::consts::PI;
 
 /// A box from (0, 0, 0) to (x, y, z) as six quads, the corners numbered from `first`.
@@ -273,6 +273,7 @@ fn choices_change_a_scene_file() {
         (Choices { smooth: Some(30.0), ..none.clone() }, "`smooth`"),
         (Choices { up: Some(Up::Z), ..none.clone() }, "`rotate = [-90, 0, 0]`"),
         (Choices { fill: Some(true), ..none.clone() }, "[[luminaire]]"),
+        (Choices { view: Some(Side::Back), ..none.clone() }, "[sensor]"),
     ] {
         let error = load_with(&folder.path("scene.toml"), &choices).unwrap_err();
         assert!(error.exit_code() == 2 && error.to_string().contains(key), "{error}");
@@ -295,14 +296,33 @@ fn a_lamp_that_lights_nothing_that_is_seen_is_not_enough() {
     let closed = room(&walls);
     assert!(closed.environment.is_some() && closed.notes[0].contains("beside what emits in it"), "{:?}", closed.notes);
     let open = room(&walls.replace(front, ""));
-    // Not on black: a faint grey, of 0.3 times half the lamp's radiance by its share of all areas (1 in 46), to two digits.
+    // Not on black: a faint grey, of 0.6 times half the lamp's radiance by its share of all areas (1 in 46), to two digits.
     let faint = |scene: &Scene| scene.environment.as_ref().map(|sky| (sky.radiance, sky.image.is_some()));
-    assert_eq!(faint(&open), Some((Vec3::splat(0.016), false)), "{:?}", open.notes);
-    assert!(open.notes[0].contains("before a faint grey of radiance 0.016, no ground"), "{:?}", open.notes);
+    assert_eq!(faint(&open), Some((Vec3::splat(0.033), false)), "{:?}", open.notes);
+    assert!(open.notes[0].contains("before a faint grey of radiance 0.033, no ground"), "{:?}", open.notes);
     assert!(open.luminaires.is_empty() && open.settings.exposure == Exposure::Auto);
     // Off the room, beside a wall.
     let beside = room("v -1 0 0\nv 4 0 0\nv 4 0 3\nv -1 0 3\nf -4 -1 -2 -3\n");
     assert!(faint(&beside).is_some_and(|(_, image)| !image), "{:?}", beside.notes);
+}
+
+/// The camera goes to the side that is asked for, of a room as well.
+#[test]
+fn each_side_may_be_looked_at() {
+    let folder = obj(block([1.0, 2.0, 3.0], 1));
+    for side in Side::ALL {
+        let scene = with(&folder, "mesh.obj", &Choices { view: Some(side), ..Choices::default() });
+        let towards = (scene.sensor.position - scene.sensor.target).normalize();
+        let expected = match side {
+            Side::Front => Vec3::Z,
+            Side::Back => Vec3::NEG_Z,
+            Side::Left => Vec3::NEG_X,
+            Side::Right => Vec3::X,
+            Side::Top => Vec3::Y,
+        };
+        assert!(towards.dot(expected) > 0.9, "{side:?}: {towards}");
+        assert!(scene.notes[1].contains(side.name()) && scene.notes[0].contains(&format!("--view {}", side.name())));
+    }
 }
 
 /// A room that no lamp lights gets a lamp at the camera, which stands inside; with lamps it has none, and no sky either.

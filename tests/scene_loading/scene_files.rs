@@ -3,7 +3,7 @@
 use super::*;
 use glam::Vec3;
 use luminaire::part::Provenance;
-use luminaire::scene::{Choices, Sky, Up, load_with, scene_file};
+use luminaire::scene::{Choices, Side, Sky, Up, load_with, scene_file};
 
 /// Models of many kinds: name of the OBJ, files.
 fn models() -> Vec<(&'static str, Vec<(&'static str, String)>)> {
@@ -70,7 +70,7 @@ fn choices() -> Vec<Choices> {
     let none = Choices::default();
     vec![
         none.clone(),
-        Choices { up: Some(Up::Z), smooth: Some(180.0), fill: Some(true), ..none.clone() },
+        Choices { up: Some(Up::Z), smooth: Some(180.0), fill: Some(true), view: Some(Side::Left), ..none.clone() },
         Choices { sky: Some(Sky::Even(Vec3::new(0.1, 0.2, 1.0 / 3.0))), ground: Some(false), ..none.clone() },
         Choices { sky: Some(Sky::None), ground: Some(true), smooth: Some(0.0), ..none },
     ]

@@ -61,8 +61,8 @@ const OPTIONS: &[(&[&str], &str)] = &[
         "the camera is the table [sensor] of the scene file, or --camera FILE.toml, which `luminaire view` writes with the key C; --camera NAME takes one of several",
     ),
     (
-        &["env", "environment", "envmap", "background", "hdri", "sky", "light", "lights"],
-        "light is in the scene file: [environment], [[luminaire]], or a material with `emission`",
+        &["env", "environment", "envmap", "background", "hdri", "light", "lights"],
+        "light from all around is --sky FILE.hdr, --sky R,G,B, studio or none; lamps are in the scene file: [[luminaire]], or a material with `emission`",
     ),
     (&["scene", "input", "i", "load"], "the scene stands alone, without an option before it: luminaire render SCENE"),
     (

@@ -47,17 +47,53 @@ pub struct FirstView {
     pub inside: bool,
 }
 
+/// A side of a scene, as of a thing on a table.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// +z, where +y is up.
+    Front,
+    /// -z.
+    Back,
+    /// -x: what is on the left as seen from the front.
+    Left,
+    /// +x.
+    Right,
+    /// From steeply above, the front below in the picture.
+    Top,
+}
+
+impl Side {
+    /// All of them.
+    pub const ALL: [Side; 5] = [Side::Front, Side::Back, Side::Left, Side::Right, Side::Top];
+
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Side::Front => "front",
+            Side::Back => "back",
+            Side::Left => "left",
+            Side::Right => "right",
+            Side::Top => "top",
+        }
+    }
+}
+
 impl Scene {
     /// A camera for the scene as it is, whatever its sensor: in front of the open side of a box, inside a room, near what stands on a ground or
     /// before a backdrop, else outside, a little from the right and from above, unless another side shows clearly more. The scene fills the
     /// picture of [`Scene::film`]'s aspect. `up` is the direction that is up, of any length but 0; +z is the front where +y is up, and -y where +z
     /// is.
     pub fn first_view(&self, up: Vec3) -> FirstView {
+        self.view_from(up, None)
+    }
+
+    /// The same, or from outside from this side.
+    pub fn view_from(&self, up: Vec3, side: Option<Side>) -> FirstView {
         let aspect = f64::from(self.film.width) / f64::from(self.film.height);
         let frame = frame(up.as_dvec3());
         let (eye, place, middle, unit) = match Solid::new(self, strays::bounds_without(self)) {
             Some(solid) => {
-                let (eye, place) = find(self, &solid, frame, aspect);
+                let (eye, place) = find(self, &solid, frame, aspect, side);
                 (eye, place, solid.middle, solid.unit)
             }
             // Nothing has any extent in single precision.
@@ -95,7 +131,7 @@ fn frame(up: DVec3) -> DMat3 {
 }
 
 /// The camera, in the solid's coordinates, and where it stands.
-fn find(scene: &Scene, solid: &Solid, frame: DMat3, aspect: f64) -> (Eye, String) {
+fn find(scene: &Scene, solid: &Solid, frame: DMat3, aspect: f64, side: Option<Side>) -> (Eye, String) {
     let here = |p: DVec3| (p - solid.middle) / solid.unit;
     let points = |bounds: Bounds| {
         move |visit: &mut dyn FnMut(DVec3)| {
@@ -116,6 +152,10 @@ fn find(scene: &Scene, solid: &Solid, frame: DMat3, aspect: f64) -> (Eye, String
         }
     });
     let whole = Subject { solid, points: &trial_points, frame, aspect, margin: MARGIN };
+    if let Some(side) = side {
+        let towards = whole.side(side);
+        return (whole.eye(towards, &all), format!("as asked: {}", side.name()));
+    }
     let found = search(&whole, &points, &all);
     if solid.is_exhausted() {
         let (towards, place) = whole.usual_side();

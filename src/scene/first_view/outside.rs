@@ -81,6 +81,18 @@ impl Subject<'_> {
         (self.towards(SIDES[0].azimuth, self.elevation()), SIDES[0].name)
     }
 
+    /// Where one stands who looks at this side.
+    pub(super) fn side(&self, side: super::Side) -> DVec3 {
+        let azimuth = match side {
+            super::Side::Front | super::Side::Top => 0.0,
+            super::Side::Back => 180.0,
+            super::Side::Left => -90.0,
+            super::Side::Right => 90.0,
+        };
+        // Not straight down, where nothing would be up in the picture.
+        self.towards(azimuth, if side == super::Side::Top { 85.0 } else { self.elevation() })
+    }
+
     /// The side that shows the most, the first of them unless another is clearly better.
     pub(super) fn best_side(&self) -> (DVec3, &'static str) {
         let level = self.elevation();

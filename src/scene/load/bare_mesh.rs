@@ -7,7 +7,7 @@ use super::{environment, footing, lamplight, obj};
 use crate::Result;
 use crate::scene::{
     Estimator, Exposure, FilmSettings, Filter, FirstView, Integrator, Luminaire, Object, Projection, RenderSettings,
-    Scene, Sensor, widen,
+    Scene, Sensor, Tone, widen,
 };
 use glam::{Affine3A, DAffine3, DMat3, DVec3, Vec2, Vec3};
 use std::path::Path;
@@ -20,7 +20,11 @@ const LEAST_EMITTING: f64 = 1e-3;
 /// But smaller ones are lamps if they are so bright that what they light has this radiance: half a percent of what is white in a PNG.
 const LEAST_LEVEL: f64 = 5e-3;
 /// The faint grey around a model that its lamps light, over the radiance of what they light.
-const FAINT: f64 = 0.3;
+const FAINT: f64 = 0.6;
+/// A lamp that reaches less than this share of what is seen does not light it.
+const LEAST_LIT: f64 = 0.2;
+/// In a room of which lamps light less than this share, there is another one at the camera.
+const WELL_LIT: f64 = 0.5;
 /// Irradiance of the lamp at the camera on what faces it at the middle distance: grey has a radiance of a quarter of the studio sky's horizon there.
 const FILL: f64 = 0.6;
 /// How the note of where the camera stands begins; the place follows.
@@ -96,14 +100,15 @@ pub(super) fn load(path: &Path, choices: &Choices) -> Result<BareMesh> {
         notes: Vec::new(),
         ground: None,
     };
-    let FirstView { sensor, place, inside } = scene.first_view(Vec3::Y);
+    let FirstView { sensor, place, inside } = scene.view_from(Vec3::Y, choices.view);
     scene.sensor = sensor;
     // As a scene file can say it in the coordinates of the files.
     for point in [&mut scene.sensor.position, &mut scene.sensor.target] {
         *point = (point.as_dvec3() + origin - origin).as_vec3();
     }
     let (emitting, level) = emitting_share(&scene);
-    let lit = (emitting >= LEAST_EMITTING || level >= LEAST_LEVEL) && lamplight::reaches_what_is_seen(&scene);
+    let lit_share = if emitting >= LEAST_EMITTING || level >= LEAST_LEVEL { lamplight::lit_share(&scene) } else { 0.0 };
+    let lit = lit_share >= LEAST_LIT;
     let sky = choices.sky.clone().unwrap_or_else(|| match (lit, inside) {
         (false, _) => Sky::Studio,
         (true, true) => Sky::None,
@@ -120,7 +125,7 @@ pub(super) fn load(path: &Path, choices: &Choices) -> Result<BareMesh> {
     if ground.is_some() {
         ground::add(&mut scene, &Ground { height: ground, ..Ground::default() });
     }
-    let fill = choices.fill.unwrap_or(inside && !lit);
+    let fill = choices.fill.unwrap_or(inside && (lit_share < WELL_LIT || level < LEAST_LEVEL));
     if fill {
         let distance = lamplight::distance_of_what_is_seen(&scene);
         let intensity = Vec3::splat(two_digits(FILL * distance * distance));
@@ -129,6 +134,9 @@ pub(super) fn load(path: &Path, choices: &Choices) -> Result<BareMesh> {
     // From outside the studio sky is as bright as a studio is; elsewhere nobody knows.
     if sky == Sky::Studio && !inside && emitting == 0.0 {
         scene.settings.exposure = Exposure::Stops(0.0);
+    } else {
+        // Lamps are in the picture, and what is far from them.
+        scene.settings.tone = Tone::Agx;
     }
     scene.warnings.extend(scene.dark_because());
     let mut bare = BareMesh { scene, loader, sky, ground, smooth, up, fill };
@@ -167,7 +175,7 @@ impl BareMesh {
         let name = for_a_shell(&self.scene.path.to_string_lossy());
         let stem = self.scene.path.file_stem().unwrap_or_default().to_string_lossy();
         let file = for_a_shell(&format!("{stem}.toml"));
-        let command = format!("luminaire scene {name}{} > {file}", options(choices));
+        let command = format!("luminaire scene {name}{} -o {file}", options(choices));
         format!("bare model: {light}{fill}, {ground}{smooth}{up}; `{command}` writes that down, to be changed")
     }
 }
@@ -184,7 +192,8 @@ fn options(choices: &Choices) -> String {
     let smooth = choices.smooth.map(|degrees| degrees.to_string());
     let up = choices.up.map(|up| if up == Up::Z { "z" } else { "y" }.to_owned());
     let fill = choices.fill.map(|on| if on { "on" } else { "off" }.to_owned());
-    let given = [("sky", sky), ("ground", ground), ("smooth", smooth), ("up", up), ("fill", fill)];
+    let view = choices.view.map(|side| side.name().to_owned());
+    let given = [("sky", sky), ("ground", ground), ("smooth", smooth), ("up", up), ("fill", fill), ("view", view)];
     given.into_iter().filter_map(|(name, value)| Some(format!(" --{name} {}", value?))).collect()
 }
 

@@ -1,5 +1,6 @@
 //! What is chosen for a scene in place of what its file says, or does not say.
 
+use crate::scene::Side;
 use crate::{Error, Result};
 use glam::Vec3;
 use std::path::{Path, PathBuf};
@@ -20,8 +21,10 @@ pub struct Choices {
     pub smooth: Option<f32>,
     /// Bare models only: the axis that points up in the file; y if nothing is said.
     pub up: Option<Up>,
-    /// Bare models only: whether there is a lamp at the camera. There is one where the camera stands in a room that no lamp lights.
+    /// Bare models only: whether there is a lamp at the camera. There is one where the camera stands in a room of which lamps light less than half, or little.
     pub fill: Option<bool>,
+    /// Bare models only: the side that the camera looks at, from outside; none: the one that shows it best.
+    pub view: Option<Side>,
 }
 
 /// Light from all around.
@@ -57,6 +60,7 @@ impl Choices {
             Choices { up: Some(_), .. } => {
                 ("--up", "an [[object]] of it is turned from z up to y up by `rotate = [-90, 0, 0]`")
             }
+            Choices { view: Some(_), .. } => ("--view", "its camera is the table [sensor]; or --camera takes another"),
             Choices { fill: Some(_), .. } => {
                 ("--fill", "a lamp at the camera is a [[luminaire]] of it, kind = \"point\"")
             }

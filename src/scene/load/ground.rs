@@ -1,18 +1,21 @@
-//! The ground that a scene file asks for with `[ground]`, and that a bare model gets: a square, level, diffuse sheet.
+//! The ground that a scene file asks for with `[ground]`, and that a bare model gets: a round, level, diffuse sheet.
 
 use crate::scene::studio_sky::GROUND_ALBEDO;
 use crate::scene::{Material, Mesh, Object, Scene, Triangle, widen};
 use glam::{Affine3A, DVec3, Vec3};
+use std::f64::consts::FRAC_PI_2;
 
 /// The diffuse albedo of a ground of which nobody states one: as bright as the horizon of the studio sky.
 pub(super) const ALBEDO: f32 = GROUND_ALBEDO as f32;
-/// Half the edge of the ground, in radii of the ball around the model's box: shadows end far within.
+/// The radius of the ground, in radii of the ball around the model's box: shadows end far within.
 const REACH: f64 = 20.0;
 /// The square in the middle has this half edge in the same unit.
 const MIDDLE: f64 = 2.0;
 /// Squares around it are so much larger, each than the one within: where the model stands triangles are no larger than it needs, and single
 /// precision knows points on them as well as on the model.
 const GROWTH: f64 = 3.2;
+/// Edges of the rim in a quarter of it.
+const RIM: u32 = 16;
 /// How far the ground is below the lowest point, as a share of the diagonal of the model's box: bottoms do not lie in it.
 const GAP: f64 = 1e-4;
 /// And at least so many times the largest coordinate, for the rounding of single precision.
@@ -25,7 +28,7 @@ pub(super) struct Ground {
     pub height: Option<f64>,
     /// Its diffuse albedo; none: that with which it is as bright as the horizon of the studio sky.
     pub albedo: Option<Vec3>,
-    /// The length of an edge; none: twenty times the diameter of the ball around the scene's box.
+    /// Its diameter; none: twenty times the diameter of the ball around the scene's box.
     pub size: Option<f64>,
 }
 
@@ -49,7 +52,7 @@ pub(super) fn height(scene: &Scene) -> f64 {
     format!("{rounded:.*}", decimals.max(0.0) as usize).parse().unwrap_or(rounded)
 }
 
-/// The length of an edge of a ground of which nobody states one.
+/// The diameter of a ground of which nobody states one.
 pub(super) fn size(scene: &Scene) -> f64 {
     let (low, high) = scene.model_bounds();
     REACH * low.distance(high)
@@ -75,20 +78,28 @@ pub(super) fn add(scene: &mut Scene, ground: &Ground) {
     scene.materials.push(Material { name: "ground".into(), lambert: albedo, ambient: albedo, ..Material::default() });
 }
 
-/// A level square of nested squares, `half` being half its edge, and `first` that of the innermost one. It faces up.
-fn sheet(center: DVec3, first: f64, half: f64, material: u32) -> Mesh {
-    let mut halves = vec![first.min(half)];
-    while halves[halves.len() - 1] < half {
-        let next = halves[halves.len() - 1] * GROWTH;
-        // The last ring is not a sliver.
-        halves.push(if next * 1.5 < half { next } else { half });
+/// A level disk: nested squares, `first` being half the edge of the innermost one, and around them a rim of this radius, so that the horizon is level
+/// whichever way one looks. It faces up.
+fn sheet(center: DVec3, first: f64, radius: f64, material: u32) -> Mesh {
+    // The corners of the last square stay within the rim.
+    let mut halves = vec![first.min(0.5 * radius)];
+    while let next = halves[halves.len() - 1] * GROWTH
+        && next < 0.5 * radius
+    {
+        halves.push(next);
     }
+    let place = |x: f64, z: f64| (center + DVec3::new(x, 0.0, z)).as_vec3();
     let corner = |half: f64, i: usize| {
         let (x, z) = [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)][i % 4];
-        (center + half * DVec3::new(x, 0.0, z)).as_vec3()
+        place(half * x, half * z)
     };
     let mut mesh = Mesh { name: "ground".into(), ..Mesh::default() };
     mesh.positions.extend(halves.iter().flat_map(|half| (0..4).map(move |i| corner(*half, i))));
+    // From the first corner of the squares on, the same way around.
+    mesh.positions.extend((0..4 * RIM).map(|k| {
+        let (sin, cos) = ((f64::from(k) / f64::from(RIM) - 0.5) * FRAC_PI_2).sin_cos();
+        place(-radius * cos, radius * sin)
+    }));
     let mut add = |vertices: [u32; 3]| mesh.triangles.push(Triangle { vertices, material });
     add([0, 1, 2]);
     add([0, 2, 3]);
@@ -99,6 +110,15 @@ fn sheet(center: DVec3, first: f64, half: f64, material: u32) -> Mesh {
             add([outer + i, outer + next, inner + next]);
             add([outer + i, inner + next, inner + i]);
         }
+    }
+    let (inner, rim) = (4 * halves.len() as u32 - 4, 4 * halves.len() as u32);
+    let of_rim = |k: u32| rim + k % (4 * RIM);
+    for i in 0..4 {
+        let (here, next) = (inner + i, inner + (i + 1) % 4);
+        for k in i * RIM..(i + 1) * RIM {
+            add([of_rim(k), of_rim(k + 1), if k < i * RIM + RIM / 2 { here } else { next }]);
+        }
+        add([of_rim(i * RIM + RIM / 2), next, here]);
     }
     mesh
 }
@@ -119,7 +139,8 @@ mod tests {
                 assert_eq!(triangle.material, 7);
                 area += 0.5 * normal.length();
             }
-            let whole = 4.0 * half * half;
+            let corners = f64::from(4 * RIM);
+            let whole = 0.5 * corners * half * half * (4.0 * FRAC_PI_2 / corners).sin();
             assert!((area - whole).abs() < 1e-5 * whole, "{area} {whole}");
             let (low, high) = mesh.bounds();
             assert_eq!((low.y, high.y), (2.0, 2.0));

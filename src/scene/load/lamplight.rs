@@ -8,8 +8,6 @@ use rayon::prelude::*;
 const RAYS: u32 = 16;
 /// From what it sees, so many points on lamps are looked for.
 const LAMP_POINTS: usize = 8;
-/// A lamp that reaches less than this share of what is seen does not light it.
-const LEAST_LIT: f64 = 0.2;
 /// Larger models are not looked at: each ray is held against each triangle.
 const MOST_TRIANGLES: u64 = 1 << 20;
 /// Rays begin and end off surfaces by this share of their length.
@@ -21,18 +19,17 @@ struct Face {
     emits: bool,
 }
 
-/// Whether enough of what the camera sees, lamps left out, has a lamp in sight; also where nothing else is seen, and where it is not found out.
-pub(super) fn reaches_what_is_seen(scene: &Scene) -> bool {
-    let Some(faces) = faces(scene) else { return true };
+/// The share of what the camera sees, lamps left out, that has a lamp in sight; 1 also where nothing else is seen, and where it is not found out.
+pub(super) fn lit_share(scene: &Scene) -> f64 {
+    let Some(faces) = faces(scene) else { return 1.0 };
     let lamps = lamp_points(&faces);
     let seen: Vec<bool> = seen(scene, &faces)
-        .into_iter()
+        .into_par_iter()
         .filter(|seen| !seen.emits)
-        .par_bridge()
         .map(|seen| lamps.iter().any(|lamp| is_free(&faces, seen.point, *lamp)))
         .collect();
     let lit = seen.iter().filter(|lit| **lit).count();
-    seen.is_empty() || lit as f64 >= LEAST_LIT * seen.len() as f64
+    if seen.is_empty() { 1.0 } else { lit as f64 / seen.len() as f64 }
 }
 
 /// The middle one of the distances of what the camera sees; that of its target where nothing is seen, or it is not found out.

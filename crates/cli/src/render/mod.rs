@@ -71,7 +71,10 @@ pub fn run(options: &Options) -> Result<ExitCode> {
 
     let mut seconds = Seconds::default();
     let start = Instant::now();
-    let mut scene = options.of_scene.load(&options.scene)?;
+    let mut scene = match options.transparent {
+        true => options.of_scene.load_cut_out(&options.scene),
+        false => options.of_scene.load(&options.scene),
+    }?;
     options.camera.choose(&mut scene, notes)?;
     seconds.load = start.elapsed().as_secs_f64();
     outputs.check(scene.files.iter().map(|path| ("a file of the scene", &**path)))?;

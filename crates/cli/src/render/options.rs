@@ -33,8 +33,8 @@ Examples:
       one of the scene's cameras; --camera house-camera-1.toml is one that the window wrote
   luminaire render house.toml --crop 800,600,200,100 --spp 4096 -o corner.png
       a piece of 200 x 100 pixels of the picture, as the whole picture would have it
-  luminaire render chair.toml --transparent -o chair.png
-      to be put over another picture
+  luminaire render chair.obj --transparent --view left -o chair.png
+      to be put over another picture; without a ground, seen from the left
   luminaire render model.obj --samples 1024..2048 -o part-1.exr
       one part of four, on one machine of four; `luminaire merge part-*.exr -o model.exr` joins them
   luminaire render model.obj --turntable 120 -o frame-%04d.png

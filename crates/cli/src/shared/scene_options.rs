@@ -1,7 +1,7 @@
 //! The options that say what a scene gets in place of what its file says, or does not say.
 
 use luminaire::glam::Vec3;
-use luminaire::scene::{self, Choices, Scene, Sky, Up};
+use luminaire::scene::{self, Choices, Scene, Side, Sky, Up};
 use std::path::{Path, PathBuf};
 
 /// What a scene gets in place of what its file says.
@@ -22,15 +22,25 @@ pub struct SceneOptions {
     /// The axis of an OBJ that points up. Programs for buildings, maps and 3D printers mostly write z [default: y].
     #[arg(long, value_name = "y|z", value_parser = up, help_heading = "Scene")]
     up: Option<Up>,
-    /// A lamp at the camera of an OBJ [default: on where the camera stands in a room that no lamp lights].
+    /// A lamp at the camera of an OBJ [default: on where the camera stands in a room of which lamps light less than half, or little].
     #[arg(long, value_name = "on|off", value_parser = on_or_off, help_heading = "Scene")]
     fill: Option<bool>,
+    /// The side of an OBJ that the camera looks at, from outside; its front is +z [default: where it shows best, in a room from inside].
+    #[arg(long, value_name = "front|back|left|right|top", value_parser = side, help_heading = "Scene")]
+    view: Option<Side>,
 }
 
 impl SceneOptions {
     /// As the library wants them.
     pub fn choices(&self) -> Choices {
-        Choices { sky: self.sky.clone(), ground: self.ground, smooth: self.smooth, up: self.up, fill: self.fill }
+        Choices {
+            sky: self.sky.clone(),
+            ground: self.ground,
+            smooth: self.smooth,
+            up: self.up,
+            fill: self.fill,
+            view: self.view,
+        }
     }
 
     /// Loads a scene with them.
@@ -40,13 +50,25 @@ impl SceneOptions {
     pub fn load(&self, path: &Path) -> luminaire::Result<Scene> {
         scene::load_with(path, &self.choices())
     }
+
+    /// Loads a scene of which a cut-out is wanted: a bare model stands on nothing then, unless it was asked for.
+    ///
+    /// # Errors
+    /// As for [`scene::load_with`].
+    pub fn load_cut_out(&self, path: &Path) -> luminaire::Result<Scene> {
+        let mut choices = self.choices();
+        if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("obj")) {
+            choices.ground.get_or_insert(false);
+        }
+        scene::load_with(path, &choices)
+    }
 }
 
 /// A sky: `studio`, `none`, three numbers, or a file.
 fn sky(text: &str) -> Result<Sky, String> {
-    match text {
+    match text.to_ascii_lowercase().as_str() {
         "studio" => return Ok(Sky::Studio),
-        "none" => return Ok(Sky::None),
+        "none" | "off" => return Ok(Sky::None),
         "" => return Err("expected an image, three numbers R,G,B, studio or none".into()),
         _ => {}
     }
@@ -67,6 +89,11 @@ fn sky(text: &str) -> Result<Sky, String> {
         _ if !numbers.is_empty() && numbers.len() == parts.len() => {
             Err("expected three numbers R,G,B for a radiance".into())
         }
+        // What could be no picture's name.
+        _ if Path::new(text).extension().is_none() => {
+            Err("expected an image (.hdr, .exr, ...), three numbers R,G,B, studio or none; no file has this name"
+                .into())
+        }
         _ => Ok(Sky::Image(PathBuf::from(text))),
     }
 }
@@ -77,6 +104,12 @@ fn on_or_off(text: &str) -> Result<bool, String> {
         "off" => Ok(false),
         _ => Err("expected on or off; more is said in a scene file, which `luminaire scene` writes".into()),
     }
+}
+
+fn side(text: &str) -> Result<Side, String> {
+    Side::ALL.into_iter().find(|side| side.name() == text.to_ascii_lowercase()).ok_or_else(|| {
+        "expected front, back, left, right or top; other cameras come from a file: --camera FILE.toml".into()
+    })
 }
 
 fn degrees(text: &str) -> Result<f32, String> {
@@ -104,6 +137,8 @@ mod tests {
         assert_eq!(sky("a,b.hdr"), Ok(Sky::Image("a,b.hdr".into())));
         for (bad, words) in [
             ("", "expected an image"),
+            ("red", "no file has this name"),
+            ("1 1 1", "three numbers"),
             ("0.5", "0.5,0.5,0.5"),
             ("1,2", "three numbers"),
             ("1,2,3,4", "three numbers"),

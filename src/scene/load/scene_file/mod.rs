@@ -127,6 +127,12 @@ fn sensor(scene: &Scene) -> String {
             ("# focus_distance", number(distance), "distance of the plane that is in focus, above 0"),
             ("# blades", "0".into(), "corners of the aperture, 3 to 64; 0 is a disk"),
             ("# blade_rotation", "0".into(), "by which the aperture is turned"),
+            ("# shift", "[0, 0]".into(), "a shift lens: by so many widths to the right and heights up of the picture"),
+            (
+                "# name",
+                "\"front\"".into(),
+                "several cameras are several [[sensor]], each with a name, which --camera takes",
+            ),
         ])
 }
 
@@ -166,7 +172,7 @@ fn ground_table(bare: &BareMesh) -> String {
     let size = exact(ground::size(&bare.scene));
     let rest = [
         ("# diffuse", grey, "its albedo, RGB from 0 to 1; this one is as bright as the horizon of the studio sky"),
-        ("# size", size, "the length of an edge, above 0"),
+        ("# size", size, "its diameter, above 0"),
     ];
     let meaning = "its y; without it a hair below the lowest point";
     match bare.ground {

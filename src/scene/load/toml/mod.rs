@@ -46,7 +46,7 @@ impl File<'_> {
     }
 
     fn build(&self, mut file: SceneFile, choices: &Choices) -> Result<Scene> {
-        let Choices { sky, ground, smooth: _, up: _, fill: _ } = choices;
+        let Choices { sky, ground, smooth: _, up: _, fill: _, view: _ } = choices;
         if sky.is_some() {
             file.environment = None;
         }
