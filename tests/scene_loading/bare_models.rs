@@ -306,6 +306,21 @@ fn a_lamp_that_lights_nothing_that_is_seen_is_not_enough() {
     assert!(faint(&beside).is_some_and(|(_, image)| !image), "{:?}", beside.notes);
 }
 
+/// Models at the limit of what coordinates may be load as they did without a ground, which is smaller then; beyond it is an error, and no panic.
+#[test]
+fn the_ground_reaches_no_further_than_coordinates_may() {
+    let scene =
+        obj("v 0 0 0\nv 5e17 0 0\nv 0 5e17 0\nv 0 0 5e17\nf 1 2 3\nf 1 3 4\nf 1 4 2\nf 2 4 3\n").load("mesh.obj");
+    let (low, high) = scene.world_bounds();
+    assert!(scene.ground.is_some() && low.abs().max(high.abs()).max_element() < 1e18, "{low} {high}");
+    for far in ["2e37", "3e38"] {
+        let folder =
+            obj(format!("v 0 0 0\nv {far} 0 0\nv 0 {far} 0\nv 0 0 {far}\nf 1 2 3\nf 1 3 4\nf 1 4 2\nf 2 4 3\n"));
+        let error = load(&folder.path("mesh.obj")).unwrap_err();
+        assert!(error.to_string().contains("is too large; scale the scene"), "{error}");
+    }
+}
+
 /// The camera goes to the side that is asked for, of a room as well.
 #[test]
 fn each_side_may_be_looked_at() {

@@ -1,6 +1,7 @@
 //! Views from outside: which side is the best.
 
 use super::fit::{Eye, axes, fit};
+use super::side::Side as Asked;
 use super::solid::Solid;
 use super::trial::Trial;
 use glam::{DMat3, DVec3};
@@ -82,15 +83,15 @@ impl Subject<'_> {
     }
 
     /// Where one stands who looks at this side.
-    pub(super) fn side(&self, side: super::Side) -> DVec3 {
+    pub(super) fn side(&self, side: Asked) -> DVec3 {
         let azimuth = match side {
-            super::Side::Front | super::Side::Top => 0.0,
-            super::Side::Back => 180.0,
-            super::Side::Left => -90.0,
-            super::Side::Right => 90.0,
+            Asked::Front | Asked::Top => 0.0,
+            Asked::Back => 180.0,
+            Asked::Left => -90.0,
+            Asked::Right => 90.0,
         };
         // Not straight down, where nothing would be up in the picture.
-        self.towards(azimuth, if side == super::Side::Top { 85.0 } else { self.elevation() })
+        self.towards(azimuth, if side == Asked::Top { 85.0 } else { self.elevation() })
     }
 
     /// The side that shows the most, the first of them unless another is clearly better.

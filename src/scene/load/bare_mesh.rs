@@ -3,7 +3,7 @@
 use super::choices::{Choices, SMOOTH, Sky, Up};
 use super::ground::{self, Ground};
 use super::loader::Loader;
-use super::{environment, footing, lamplight, obj};
+use super::{environment, footing, lamplight, obj, reach};
 use crate::Result;
 use crate::scene::{
     Estimator, Exposure, FilmSettings, Filter, FirstView, Integrator, Luminaire, Object, Projection, RenderSettings,
@@ -100,6 +100,8 @@ pub(super) fn load(path: &Path, choices: &Choices) -> Result<BareMesh> {
         notes: Vec::new(),
         ground: None,
     };
+    // Before a ground reaches further still.
+    reach::check(&scene)?;
     let FirstView { sensor, place, inside } = scene.view_from(Vec3::Y, choices.view);
     scene.sensor = sensor;
     // As a scene file can say it in the coordinates of the files.

@@ -1,5 +1,6 @@
 //! The ground that a scene file asks for with `[ground]`, and that a bare model gets: a round, level, diffuse sheet.
 
+use super::reach::LARGEST_COORDINATE;
 use crate::scene::studio_sky::GROUND_ALBEDO;
 use crate::scene::{Material, Mesh, Object, Scene, Triangle, widen};
 use glam::{Affine3A, DVec3, Vec3};
@@ -63,7 +64,9 @@ pub(super) fn add(scene: &mut Scene, ground: &Ground) {
     let y = ground.height.unwrap_or_else(|| height(scene)) - scene.origin.y;
     let (low, high) = scene.model_bounds();
     let (middle, radius) = (0.5 * (low + high), 0.5 * low.distance(high));
-    let half = 0.5 * ground.size.unwrap_or_else(|| size(scene));
+    // No further than coordinates may reach.
+    let most = 0.9 * LARGEST_COORDINATE - (middle + scene.origin).abs().max_element();
+    let half = 0.5 * ground.size.unwrap_or_else(|| size(scene).min(2.0 * most.max(radius)));
     let material = scene.materials.len() as u32;
     let mesh = sheet(DVec3::new(middle.x, y, middle.z), MIDDLE * radius, half, material);
     scene.ground = Some(scene.objects.len() as u32);

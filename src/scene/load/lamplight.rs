@@ -4,12 +4,15 @@ use crate::scene::{Projection, Scene, widen};
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// The camera looks along so many rays each way.
+/// The camera looks along so many rays each way, and at least so many.
 const RAYS: u32 = 16;
+const LEAST_RAYS: u32 = 4;
 /// From what it sees, so many points on lamps are looked for.
 const LAMP_POINTS: usize = 8;
 /// Larger models are not looked at: each ray is held against each triangle.
-const MOST_TRIANGLES: u64 = 1 << 20;
+const MOST_TRIANGLES: u64 = 1 << 21;
+/// Of many triangles fewer rays: so many pairs of a ray and a triangle.
+const PAIRS: u64 = 1 << 24;
 /// Rays begin and end off surfaces by this share of their length.
 const OFF: f64 = 1e-4;
 
@@ -58,9 +61,10 @@ fn seen(scene: &Scene, faces: &[Face]) -> Vec<Seen> {
     let up = right.cross(forward);
     let half = (0.5 * f64::from(fov)).to_radians().tan();
     let aspect = f64::from(scene.film.width) / f64::from(scene.film.height);
-    let seen = (0..RAYS * RAYS).into_par_iter().filter_map(|ray| {
-        let share = |i: u32| 2.0 * (f64::from(i) + 0.5) / f64::from(RAYS) - 1.0;
-        let direction = forward + half * (aspect * share(ray % RAYS) * right + share(ray / RAYS) * up);
+    let rays = ((PAIRS / faces.len().max(1) as u64).isqrt() as u32).clamp(LEAST_RAYS, RAYS);
+    let seen = (0..rays * rays).into_par_iter().filter_map(|ray| {
+        let share = |i: u32| 2.0 * (f64::from(i) + 0.5) / f64::from(rays) - 1.0;
+        let direction = forward + half * (aspect * share(ray % rays) * right + share(ray / rays) * up);
         let (face, distance) = nearest(faces, eye, direction)?;
         Some(Seen { point: eye + distance * (1.0 - OFF) * direction, emits: face.emits })
     });

@@ -18,6 +18,7 @@ mod near_name;
 mod obj;
 mod other_formats;
 mod polygon;
+mod reach;
 mod scene_file;
 mod texel_faults;
 mod text_file;
@@ -32,9 +33,6 @@ use crate::scene::Scene;
 use crate::{Error, Result};
 use near_name::instead_of;
 use std::path::Path;
-
-/// World coordinates beyond this are refused: their squares would leave the range of `f32`.
-const LARGEST_COORDINATE: f64 = 1e18;
 
 /// Loads a scene file (`.toml`), or any OBJ (`.obj`), which then gets a camera and, if next to nothing in it
 /// emits, a sky and a ground.
@@ -94,13 +92,7 @@ fn finish(scene: &mut Scene) -> Result<()> {
             *warning = warning.replace(char::is_control, "\u{fffd}");
         }
     }
-    let (low, high) = scene.world_bounds();
-    let largest = (low + scene.origin).abs().max((high + scene.origin).abs()).max_element();
-    if largest > LARGEST_COORDINATE {
-        let message = format!("a coordinate of {largest:e} is too large; scale the scene to stay within 1e18");
-        return Err(Error::scene(&scene.path, message));
-    }
-    Ok(())
+    reach::check(scene)
 }
 
 /// Names what is there in the place of a scene that is missing.

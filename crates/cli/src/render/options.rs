@@ -69,7 +69,7 @@ pub struct Options {
     #[command(flatten)]
     pub camera: CameraOption,
     /// Render only these pixels: the left column and the upper row, counted from 0 at the upper left of the picture, width and height. They are those of the whole
-    /// picture to the last bit, in a picture of W x H pixels; an EXR knows its place in the whole (data window).
+    /// picture to the last bit (but the layers `error` along the border), in a picture of W x H pixels; an EXR knows its place in the whole (data window).
     #[arg(long, value_name = "X,Y,W,H", allow_negative_numbers = true, value_parser = rectangle, help_heading = "Framing")]
     pub crop: Option<Rectangle>,
     /// Hide the sky from the camera and give the picture alpha: the share of a pixel's samples that met something, glass included. The sky still lights the scene, and is

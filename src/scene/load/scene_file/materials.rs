@@ -1,4 +1,4 @@
-//! The materials of a model as tables, in comments: uncommented, they change nothing.
+//! The materials of a model as tables, in comments: uncommented, they change nothing, but where several materials have one name.
 
 use super::words::{number, path, quoted, triple};
 use crate::Result;
@@ -58,7 +58,15 @@ pub(super) fn tables(scene: &Scene, drafts: &[Draft], folder: &Path) -> Result<S
             1 => "1 triangle".into(),
             count => format!("{count} triangles"),
         };
-        text += &format!("\n# [[material]]\n# name = {}  # {said}\n", quoted(&drafts[index].name));
+        let of_one_name =
+            drafts.iter().enumerate().filter(|(other, draft)| shown[*other] > 0 && draft.name == drafts[index].name);
+        let others = match of_one_name.count() {
+            0 | 1 => String::new(),
+            count => format!(
+                "; {count} materials have this name, these are the numbers of the first, and a table changes all"
+            ),
+        };
+        text += &format!("\n# [[material]]\n# name = {}  # {said}{others}\n", quoted(&drafts[index].name));
         text += &table(&scene.materials[index], &drafts[index], folder)?;
     }
     Ok(text)

@@ -11,9 +11,9 @@ mod tables;
 mod values;
 
 use super::choices::Choices;
-use super::environment;
 use super::ground::{self, Ground};
 use super::loader::Loader;
+use super::{environment, reach};
 use crate::scene::{Camera, FirstView, Projection, RenderSettings, Scene, Sensor};
 use crate::{Error, Result};
 use advice::{in_plain_words, wrong_brackets};
@@ -129,6 +129,7 @@ impl File<'_> {
             notes: Vec::new(),
             ground: None,
         };
+        reach::check(&scene)?;
         scene.sensor = match scene.cameras.first() {
             Some(camera) => camera.sensor.clone(),
             None => {
