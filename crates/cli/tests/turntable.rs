@@ -7,7 +7,7 @@ mod devices;
 use common::running::Running;
 use common::{Folder, stderr};
 use luminaire::picture;
-use luminaire::scene::load;
+use luminaire::scene::{Pivot, load};
 use std::time::SystemTime;
 
 /// A room with a lamp, in which walls differ; one is open, towards +x.
@@ -74,7 +74,8 @@ fn a_frame_is_the_picture_of_the_turned_camera() {
         let rest = format!("--backend {backend} --aov");
         run(&folder, &format!("render room.toml --turntable 7 {rest} -o {backend}-%d.exr"));
         for frame in [0, 2, 6] {
-            folder.write("turned.toml", &scene(sensor.turned(f64::from(frame) / 7.0).position.to_array()));
+            let turned = sensor.turned(f64::from(frame) / 7.0, Pivot::Target);
+            folder.write("turned.toml", &scene(turned.position.to_array()));
             run(&folder, &format!("render turned.toml {rest} -o turned.exr"));
             let pixels = |name: &str| picture::read(&folder.path().join(name)).unwrap();
             let (found, expected) = (pixels(&format!("{backend}-{frame}.exr")), pixels("turned.exr"));
