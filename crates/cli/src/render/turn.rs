@@ -215,7 +215,9 @@ impl<'a> Outlook<'a> {
 
     /// From which positions of the turn something stands before the target that does not belong to its surroundings, as the camera sees them.
     fn hidden(&self) -> Vec<bool> {
-        let reach = self.before(0).into_iter().fold(0.0, f64::max);
+        let mut reach = self.before(0);
+        reach.sort_by(f64::total_cmp);
+        let reach = reach[reach.len() / 2];
         let enough = BEFORE + UNEVEN * reach;
         let most = (BUNDLE * BUNDLE / 2) as usize;
         (0..POSITIONS).map(|k| self.before(k).into_iter().filter(|before| *before > enough).count() > most).collect()

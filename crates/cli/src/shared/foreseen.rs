@@ -40,6 +40,11 @@ pub fn foresee_by(scene: &mut Scene, own: &FilmSettings, mut tracer: Option<Refe
     Foreseen { lacks_light, development: Development { exposure, tone: scene.settings.tone }, found }
 }
 
+/// A number with six decimals at most.
+fn short(number: f64) -> f64 {
+    (number * 1e6).round() / 1e6
+}
+
 /// What is said of a camera below the ground that the loader made: it looks at the ground from below, which hides the model.
 fn below_the_ground(scene: &Scene) -> Option<String> {
     let ground = &scene.objects[scene.ground? as usize];
@@ -48,11 +53,11 @@ fn below_the_ground(scene: &Scene) -> Option<String> {
     let camera = f64::from(scene.sensor.position.y);
     (camera < height).then(|| {
         format!(
-            "{}: the camera stands below the ground (at a height of {:.6}, the ground at {:.6}), and sees it from below: move one of them, or leave the ground out \
+            "{}: the camera stands below the ground (at a height of {}, the ground at {}), and sees it from below: move one of them, or leave the ground out \
              (--ground off)",
             scene.path.display(),
-            camera + scene.origin.y,
-            height + scene.origin.y
+            short(camera + scene.origin.y),
+            short(height + scene.origin.y)
         )
     })
 }
