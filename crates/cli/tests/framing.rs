@@ -268,7 +268,7 @@ fn a_transparent_picture_goes_over_any_other() {
 fn a_camera_below_the_ground_is_warned_of() {
     let runs = Runs::new();
     let scene = |height: &str| {
-        let sensor = "[sensor]\nposition = [0.5, -0.5, 3]\ntarget = [0.5, 0.25, 0]\n";
+        let sensor = "[sensor]\nposition = [0.5, -0.5, 3]\ntarget = [0.5, 0.25, 0]\nfov = 40\n";
         format!("{sensor}{REST}[ground]\nheight = {height}\n")
     };
     runs.0.write("below.toml", &scene("-0.25"));

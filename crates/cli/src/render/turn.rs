@@ -23,7 +23,7 @@ const CIRCLES: [(f64, f64); 6] = [(1.0, 0.0), (0.8, 0.0), (1.0, 0.1), (1.0, -0.1
 /// Rays across and down to the surroundings of the target, ...
 const BUNDLE: u32 = 8;
 /// ... which are so wide, as a share of the distance.
-const SURROUNDINGS: f64 = 0.1;
+const SURROUNDINGS: f64 = 0.4;
 /// What stands before the target by more than this share of the distance hides it, unless the model itself reaches that far from the target.
 const BEFORE: f64 = 0.15;
 /// A model reaches up to so many times as far on other sides as on the one that the first frame sees.
