@@ -171,7 +171,7 @@ impl<'a> Outlook<'a> {
     /// Which positions of the turn lie behind walls: nothing leads there from the camera along its circle, or beside it, and what the camera sees in
     /// the middle of its picture is not to be seen from there.
     fn behind_walls(&self) -> Vec<bool> {
-        let mut reached = vec![false; POSITIONS];
+        let mut reached = [false; POSITIONS];
         for (radius, lift) in CIRCLES {
             let point = |k: usize| {
                 let k = k % POSITIONS;
