@@ -3,6 +3,7 @@
 use super::file::{about, read};
 use super::provenance::Provenance;
 use crate::memory::{available, gib};
+use crate::picture::Development;
 use crate::render::Rendered;
 use crate::sampling::PARTS;
 use crate::{Error, Result};
@@ -32,12 +33,18 @@ fn fits((width, height): (u32, u32), parts: usize, available: Option<u64>) -> Re
     }
 }
 
+/// A part's file, and how it says that the picture is to be developed.
+pub type Shown = (PathBuf, Development);
+
 /// Joins parts, given in any order, that together hold every sample from number 0 on once. Only one of them is in memory at a time.
+///
+/// The provenance is that of the part with sample number 0. How each part says that the picture is to be developed is listed in the order of their
+/// samples: that may be different from part to part.
 ///
 /// # Errors
 /// As [`read`]; [`Error::Usage`] if samples are missing or doubled, or parts are of different renders.
-pub fn merge(paths: &[PathBuf]) -> Result<(Rendered, Provenance)> {
-    let mut parts: Vec<(Range<u32>, &PathBuf)> = Vec::new();
+pub fn merge(paths: &[PathBuf]) -> Result<(Rendered, Provenance, Vec<Shown>)> {
+    let mut parts: Vec<(Range<u32>, &PathBuf, Provenance)> = Vec::new();
     let mut first: Option<(Provenance, &PathBuf)> = None;
     for path in paths {
         let (provenance, counts) = about(path)?;
@@ -52,7 +59,6 @@ pub fn merge(paths: &[PathBuf]) -> Result<(Rendered, Provenance)> {
                 path.display()
             )));
         };
-        parts.push((counts.first_sample..end, path));
         let (one, other) = first.get_or_insert_with(|| (provenance.clone(), path));
         let differences = one.differences(&provenance);
         if !differences.is_empty() {
@@ -63,12 +69,13 @@ pub fn merge(paths: &[PathBuf]) -> Result<(Rendered, Provenance)> {
                 differences.join(", ").replace(" there", " in the first").replace(" here", " in the second")
             )));
         }
+        parts.push((counts.first_sample..end, path, provenance));
     }
-    parts.sort_by_key(|(range, _)| (range.start, range.end));
+    parts.sort_by_key(|(range, ..)| (range.start, range.end));
     let mut next = 0;
-    for (i, (range, path)) in parts.iter().enumerate() {
+    for (i, (range, path, _)) in parts.iter().enumerate() {
         if range.start < next {
-            let (before, other) = &parts[i - 1];
+            let (before, other, _) = &parts[i - 1];
             return Err(Error::Usage(format!(
                 "samples {}..{} are in both {} ({}..{}) and {} ({}..{}): leave one of them out",
                 range.start,
@@ -92,8 +99,10 @@ pub fn merge(paths: &[PathBuf]) -> Result<(Rendered, Provenance)> {
     if let Some((provenance, _)) = &first {
         fits(provenance.film_size(), parts.len(), available())?;
     }
+    let shown = parts.iter().map(|(_, path, provenance)| ((*path).clone(), provenance.development())).collect();
+    let first = parts.first().map(|(.., provenance)| provenance.clone());
     let mut whole: Option<Rendered> = None;
-    for (range, path) in parts {
+    for (range, path, _) in parts {
         let (part, _) = read(path)?;
         // The file may have changed since its head was read.
         if part.film.first_sample != range.start || part.film.samples.iter().any(|n| *n != range.end - range.start) {
@@ -104,10 +113,9 @@ pub fn merge(paths: &[PathBuf]) -> Result<(Rendered, Provenance)> {
             Some(whole) => whole.append(&part),
         }
     }
-    let (mut whole, (provenance, _)) =
-        whole.zip(first).ok_or_else(|| Error::Usage("there is no part to merge".into()))?;
+    let (mut whole, provenance) = whole.zip(first).ok_or_else(|| Error::Usage("there is no part to merge".into()))?;
     whole.progress.error = whole.film.error();
-    Ok((whole, provenance))
+    Ok((whole, provenance, shown))
 }
 
 #[cfg(test)]

@@ -12,5 +12,5 @@ mod merge;
 mod provenance;
 
 pub use file::{is_part, read, resume, resume_crop, save};
-pub use merge::merge;
+pub use merge::{Shown, merge};
 pub use provenance::Provenance;

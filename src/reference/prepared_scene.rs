@@ -24,7 +24,7 @@ const TRIANGLE: u64 = 240;
 
 impl Reference {
     /// Whether the memory that is free holds a tracer of a scene ([`Reference::new`]).
-    pub(super) fn fits(scene: &Scene) -> bool {
+    pub fn fits(scene: &Scene) -> bool {
         let triangles: u64 = scene.meshes.iter().map(|mesh| mesh.triangles.len() as u64).sum();
         available().is_none_or(|free| triangles * TRIANGLE <= free)
     }

@@ -39,7 +39,7 @@ pub use luminaire_table::{EmissiveTriangle, LuminaireTable, SampledLuminaire};
 pub use material::{Maps, Material};
 pub use mesh::{Mesh, Object, Triangle};
 pub(crate) use mesh::{moved_box, outward, widen};
-pub use sensor::{Camera, Lens, Projection, Sensor};
+pub use sensor::{Camera, Lens, Pivot, Projection, Sensor};
 pub use settings::{Exposure, FilmSettings, RenderSettings};
 pub use texture::Texture;
 pub use world::Scene;

@@ -59,20 +59,49 @@ pub struct Lens {
     pub rotation: f32,
 }
 
+/// About what a sensor turns.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Pivot {
+    /// The axis through its target: it moves around that.
+    Target,
+    /// The axis through its own position: it stays where it is, and looks around.
+    Position,
+}
+
+/// An `up` is along an axis within so many degrees.
+const UPRIGHT: f64 = 1.0;
+/// A line of sight within so many degrees of -y looks down.
+const LOOKS_DOWN: f64 = 30.0;
 /// Relative error of one rounding in single precision.
 const ROUNDING: f64 = f32::EPSILON as f64 * 0.5;
 /// A pixel that is larger than so many roundings of a ray's points is drawn well.
 const ROUNDINGS_IN_A_PIXEL: f64 = 16.0;
 
 impl Sensor {
-    /// The sensor after so many turns around its target, about its own up: counter-clockwise as seen from above, so that the scene seems to turn
-    /// clockwise. After none it is the sensor itself.
+    /// The sensor after so many turns about the vertical axis ([`Sensor::vertical`]) through its target, or on the spot: counter-clockwise as seen from
+    /// above, so that the scene seems to turn clockwise. After none it is the sensor itself.
     #[must_use]
-    pub fn turned(&self, turns: f64) -> Sensor {
-        let (target, up) = (self.target.as_dvec3(), self.up.as_dvec3().normalize());
-        let arm = self.position.as_dvec3() - target;
-        let turned = DQuat::from_axis_angle(up, turns * TAU) * arm;
-        Sensor { position: if turns == 0.0 { self.position } else { (target + turned).as_vec3() }, ..self.clone() }
+    pub fn turned(&self, turns: f64, pivot: Pivot) -> Sensor {
+        if turns == 0.0 {
+            return self.clone();
+        }
+        let turn = DQuat::from_axis_angle(self.vertical(), turns * TAU);
+        let (position, target) = (self.position.as_dvec3(), self.target.as_dvec3());
+        let (position, target) = match pivot {
+            Pivot::Target => (target + turn * (position - target), target),
+            Pivot::Position => (position, position + turn * (target - position)),
+        };
+        let up = (turn * self.up.as_dvec3()).as_vec3();
+        Sensor { position: position.as_vec3(), target: target.as_vec3(), up, ..self.clone() }
+    }
+
+    /// Which way is up in the scene: +y; but the sensor's `up` where that is +z, and the sensor does not look down the y axis, as from
+    /// straight above: then z is vertical, as in Blender.
+    pub fn vertical(&self) -> DVec3 {
+        let up = self.up.as_dvec3().normalize();
+        let is_z = up.z > UPRIGHT.to_radians().cos();
+        let looks_down = -self.forward().y > LOOKS_DOWN.to_radians().cos();
+        if is_z && !looks_down { up } else { DVec3::Y }
     }
 
     /// How far in front of the eye point, along the line of sight, a tracer of single precision lets camera rays start: 0, the eye point itself,
@@ -124,9 +153,10 @@ impl Sensor {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::build::pinhole;
 
     #[test]
-    fn it_turns_about_its_up_as_seen_from_above() {
+    fn it_turns_about_the_vertical_as_seen_from_above() {
         let sensor = |position, up| Sensor {
             position,
             target: Vec3::new(1.0, 1.0, 1.0),
@@ -138,16 +168,42 @@ mod tests {
         // From the front, +z, a quarter of a turn goes to the right, +x; heights stay.
         let start = sensor(Vec3::new(1.0, 3.0, 5.0), Vec3::Y * 7.0);
         let near = |turns: f64, expected: Vec3| {
-            let turned = start.turned(turns);
+            let turned = start.turned(turns, Pivot::Target);
             assert!(turned.position.distance(expected) < 1e-6, "{turns}: {}", turned.position);
             assert_eq!((turned.target, turned.up), (start.target, start.up));
         };
         near(0.25, Vec3::new(5.0, 3.0, 1.0));
         near(0.5, Vec3::new(1.0, 3.0, -3.0));
         near(0.75, Vec3::new(-3.0, 3.0, 1.0));
-        assert_eq!(start.turned(0.0), start);
-        // Where +z is up, as in Blender.
-        let up = sensor(Vec3::new(1.0, -3.0, 2.0), Vec3::Z).turned(0.25);
-        assert!(up.position.distance(Vec3::new(5.0, 1.0, 2.0)) < 1e-6, "{}", up.position);
+        assert_eq!(start.turned(0.0, Pivot::Target), start);
+        // On the spot it looks into the same directions.
+        for turns in [0.25, 0.4, 0.875] {
+            let (around, spot) = (start.turned(turns, Pivot::Target), start.turned(turns, Pivot::Position));
+            assert_eq!((spot.position, spot.up), (start.position, start.up));
+            let sights = [&around, &spot].map(|sensor| sensor.target - sensor.position);
+            assert!(sights[0].distance(sights[1]) < 1e-5, "{sights:?}");
+        }
+        // Where +z is up, as in Blender; also seen from above at an angle.
+        let up = sensor(Vec3::new(1.0, -3.0, 2.0), Vec3::Z).turned(0.25, Pivot::Target);
+        assert!(up.position.distance(Vec3::new(5.0, 1.0, 2.0)) < 1e-6 && up.up == Vec3::Z, "{}", up.position);
+        let up = sensor(Vec3::new(1.0, 1.0 + 4.0, 5.0), Vec3::Z).turned(0.5, Pivot::Target);
+        assert!(up.position.distance(Vec3::new(1.0, -3.0, 5.0)) < 1e-5, "{}", up.position);
+    }
+
+    #[test]
+    fn the_picture_turns_where_it_looks_straight_down() {
+        for up in [-Vec3::Z, Vec3::Z, Vec3::X] {
+            let down = pinhole(Vec3::new(1.0, 5.0, 1.0), Vec3::ONE, up, 40.0);
+            let turned = down.turned(0.25, Pivot::Target);
+            assert!(turned.position.distance(down.position) < 1e-6, "{}", turned.position);
+            let expected = Vec3::new(up.z, 0.0, -up.x);
+            assert!(turned.up.distance(expected) < 1e-6, "{up}: {}", turned.up);
+        }
+        // A camera that is held at a slant, and tilted: all of it turns about y.
+        let slanted = pinhole(Vec3::new(0.0, 2.0, 3.0), Vec3::ZERO, Vec3::new(0.5, 1.0, 0.0), 40.0);
+        let half = slanted.turned(0.5, Pivot::Target);
+        assert!(half.position.distance(Vec3::new(0.0, 2.0, -3.0)) < 1e-6, "{}", half.position);
+        assert!(half.up.distance(Vec3::new(-0.5, 1.0, 0.0)) < 1e-6, "{}", half.up);
+        assert_eq!(slanted.vertical(), DVec3::Y);
     }
 }

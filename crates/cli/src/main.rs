@@ -22,6 +22,7 @@ mod tests;
 use clap::{CommandFactory, Parser};
 use shared::exit_codes::EXIT_CODES;
 use shared::printing;
+use std::ffi::{OsStr, OsString};
 use std::process::ExitCode;
 
 /// Before the exit codes in `--help`.
@@ -76,6 +77,32 @@ enum Command {
     Man(man::Options),
 }
 
+/// The words of a command line, in which `--option -1,2` is written `--option=-1,2`: what begins with a minus and a digit is a value, also one that is no number, so
+/// that the option itself says what it expects.
+fn negative_values(words: impl Iterator<Item = OsString>) -> Vec<OsString> {
+    let mut joined: Vec<OsString> = vec![];
+    for word in words {
+        let is_negative = word.as_encoded_bytes().strip_prefix(b"-").is_some_and(|rest| {
+            // Numbers as such are known to be values.
+            rest.first().is_some_and(u8::is_ascii_digit)
+                && std::str::from_utf8(rest).map_or(true, |n| n.parse::<f64>().is_err())
+        });
+        match joined.last_mut() {
+            Some(option) if is_negative && is_long_option(option) => {
+                option.push("=");
+                option.push(word);
+            }
+            _ => joined.push(word),
+        }
+    }
+    joined
+}
+
+/// Whether a word is an option that has no value yet.
+fn is_long_option(word: &OsStr) -> bool {
+    word.as_encoded_bytes().strip_prefix(b"--").is_some_and(|name| !name.is_empty() && !name.contains(&b'='))
+}
+
 fn main() -> ExitCode {
     luminaire::backend::fit_threads();
     // Where memory is refused, Rust says so and aborts, as drivers do: that is a failure like others, and no crash.
@@ -85,8 +112,10 @@ fn main() -> ExitCode {
         1,
         std::sync::Arc::new(std::sync::atomic::AtomicBool::new(true)),
     );
-    let words: Vec<String> = std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect();
-    let args = Args::try_parse().unwrap_or_else(|error| advice::with_advice(error, &words, Args::command()).exit());
+    let given = negative_values(std::env::args_os());
+    let words: Vec<String> = given.iter().map(|word| word.to_string_lossy().into_owned()).collect();
+    let args =
+        Args::try_parse_from(&given).unwrap_or_else(|error| advice::with_advice(error, &words, Args::command()).exit());
     let result = match &args.command {
         Command::Render(options) => render::run(options),
         Command::Merge(options) => merge::run(options),

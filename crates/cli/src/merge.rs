@@ -19,7 +19,8 @@ Examples:
       shown in another way than the parts say
 
 The parts must be of the same scene, size, seed, estimator and version, and hold every sample from number 0 on once. The picture is the one of a single
-render, but for rounding (1e-6 of each number at most).
+render, but for rounding (1e-6 of each number at most). Where parts
+want to be shown in different ways, that of the one with sample 0 counts.
 
 Exit codes:
   0  merged
@@ -52,7 +53,7 @@ pub fn run(options: &Options) -> Result<ExitCode> {
         outputs.add("-o", path)?;
     }
     outputs.check(options.parts.iter().map(|part| ("one of the parts", &**part)))?;
-    let (whole, provenance) = part::merge(&options.parts)?;
+    let (whole, provenance, shown) = part::merge(&options.parts)?;
     if whole.film.missed.is_some()
         && let Some(path) =
             options.output.iter().find(|path| matches!(picture::Format::of(path), Ok(picture::Format::Hdr)))
@@ -64,6 +65,9 @@ pub fn run(options: &Options) -> Result<ExitCode> {
         exposure: options.exposure.unwrap_or(of_the_parts.exposure),
         tone: options.tone.map_or(of_the_parts.tone, ToneName::tone),
     };
+    if let Some(disagreement) = disagreement(options, &shown) {
+        warn(disagreement);
+    }
     let mut text = String::new();
     for path in &options.output {
         whole.film.save(path, development)?;
@@ -83,4 +87,25 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     }
     print(&text)?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// Which parts want to be shown in different ways, as a sentence for a warning; none where they agree, an option decides, or no PNG is written.
+fn disagreement(options: &Options, parts: &[part::Shown]) -> Option<String> {
+    let png = |path: &PathBuf| matches!(picture::Format::of(path), Ok(picture::Format::Png));
+    let ((first, counts), others) = parts.split_first()?;
+    let differ = |other: &Development| {
+        (options.exposure.is_none() && other.exposure != counts.exposure)
+            || (options.tone.is_none() && other.tone != counts.tone)
+    };
+    let (other, wanted) = others.iter().find(|(_, other)| differ(other))?;
+    options.output.iter().any(png).then(|| {
+        let words = |how: &Development| format!("exposure {:+}, tone `{}`", how.exposure, how.tone.name());
+        format!(
+            "{} says {}, {} says {}: the first of them, which has sample 0, counts; --exposure and --tone choose",
+            first.display(),
+            words(counts),
+            other.display(),
+            words(wanted)
+        )
+    })
 }

@@ -26,7 +26,7 @@ Examples:
   luminaire view scenes/cornell/cornell.toml --spp 256
       the picture stops at 256 samples a pixel; C prints the camera, and writes it to cornell-camera-1.toml
   luminaire view scenes/cornell/cornell.toml --camera cornell-camera-1.toml
-      begins with the camera, and the exposure, that C wrote; `luminaire render` takes it, too
+      begins with the camera, the exposure and the tone curve that C wrote; `luminaire render` takes it, too
 
 Files go to the current folder: <SCENE>-view-1.png, -2, ...; none is ever replaced.";
 

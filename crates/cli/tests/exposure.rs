@@ -96,11 +96,28 @@ fn parts_hold_how_they_are_shown() {
         run(&folder, &format!("render auto.toml --backend cpu --samples {samples} -o {part}"));
     }
     run(&folder, "merge a.exr b.exr -o merged.png -o merged.exr");
+    let agreed = png(&folder, "merged.png");
     let far = png(&folder, "whole.png").iter().zip(png(&folder, "merged.png")).map(|(a, b)| a.abs_diff(b)).max();
     assert!(far.unwrap() <= 1, "but for rounding: {far:?}");
     run(&folder, "merge a.exr b.exr -o merged.png --exposure -3 --tone neutral");
     let how = Development { exposure: -3.0, tone: Tone::Neutral };
     assert_eq!(png(&folder, "merged.png"), to_srgb8(&linear(&folder, "merged.exr"), how));
+    // Parts that disagree: the one with sample 0 counts, in whatever order they are given.
+    run(&folder, "render auto.toml --backend cpu --samples 2..4 --exposure 2 --tone srgb -o c.exr");
+    let merged = ["a.exr c.exr", "c.exr a.exr"].map(|parts| {
+        let said = run(&folder, &format!("merge {parts} -o merged.png"));
+        assert!(
+            said.contains("warning: a.exr says exposure") && said.contains("c.exr says exposure +2, tone `srgb`"),
+            "{said}"
+        );
+        png(&folder, "merged.png")
+    });
+    assert!(merged[0] == agreed && merged[1] == agreed);
+    let said = run(&folder, "merge c.exr a.exr -o merged.png --exposure 1 --tone agx");
+    assert!(
+        !said.contains("warning") && !run(&folder, "merge c.exr a.exr -o merged.exr").contains("warning"),
+        "{said}"
+    );
     let output = folder.luminaire(&["merge", "a.exr", "b.exr", "-o", "c.png", "--exposure", "auto"]).output().unwrap();
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("parts hold the exposure"), "{}", stderr(&output));

@@ -107,9 +107,14 @@ fn a_camera_from_a_file() {
     // The camera of another scene, of which nothing else counts; and no picture in its place.
     let said = runs.render("room.toml --camera same.toml -o a.png");
     assert!(
-        said.contains("only its camera and how its pictures are shown count here") && said.contains("[film]"),
+        said.contains("only its camera and how its pictures are shown count here")
+            && said.contains("not its [film], [environment], [[object]], `spp`"),
         "{said}"
     );
+    let more = "[integrator]\nmax_bounces = 1\n[render]\nseed = 3\nsampler = \"independent\"\ntone = \"agx\"\n";
+    runs.0.write("more.toml", &(table.clone() + more));
+    let said = runs.render("room.toml --camera more.toml -o more.png");
+    assert!(said.contains("not its [integrator], `seed`, `sampler`") && !said.contains("`spp`"), "{said}");
     assert!(runs.bytes("a.png") == runs.bytes("b.png"));
     // A scene without a camera, and a bare mesh.
     runs.0.write("none.toml", REST);
@@ -257,4 +262,37 @@ fn a_transparent_picture_goes_over_any_other() {
     runs.render("room.toml --transparent --crop 10,8,2,1 -o inside.png");
     let inside = image::open(runs.path("inside.png")).unwrap();
     assert!(inside.color() == image::ColorType::Rgba8 && inside.into_rgba8().pixels().all(|p| p[3] == 255));
+}
+
+#[test]
+fn a_camera_below_the_ground_is_warned_of() {
+    let runs = Runs::new();
+    let scene = |height: &str| {
+        let sensor = "[sensor]\nposition = [0.5, -0.5, 3]\ntarget = [0.5, 0.25, 0]\nfov = 40\n";
+        format!("{sensor}{REST}[ground]\nheight = {height}\n")
+    };
+    runs.0.write("below.toml", &scene("-0.25"));
+    runs.0.write("above.toml", &scene("-0.75"));
+    let words = "the camera stands below the ground (at a height of -0.5, the ground at -0.25)";
+    for command in ["render below.toml --backend cpu --width 4 -o a.png", "inspect below.toml"] {
+        let output = runs.run(command);
+        let said = stderr(&output) + &String::from_utf8(output.stdout).unwrap();
+        assert_eq!(said.matches(words).count(), 1, "{said}");
+    }
+    for words in ["above.toml", "below.toml --ground off"] {
+        assert!(!runs.render(&format!("{words} --width 4 -o a.png")).contains("below the ground"), "{words}");
+    }
+}
+
+#[test]
+fn a_negative_piece_is_answered_by_what_is_expected() {
+    let runs = Runs::new();
+    for words in ["--crop -1,0,10,10", "--crop=-1,0,10,10", "--crop -1", "--crop 1,-2,3,4"] {
+        assert!(runs.refused(&format!("render room.toml {words}"), 2).contains("expected the left column"), "{words}");
+    }
+    let said = runs.refused("render room.toml --crop --aov", 2);
+    assert!(said.contains("a value is required for '--crop"), "{said}");
+    assert!(runs.refused("render room.toml --pixel -1,2 --sample 0", 2).contains("expected column and row"));
+    assert!(runs.refused("render room.toml --samples -1..2", 2).contains("0..64 or 64..128"));
+    assert!(runs.refused("render room.toml --aov -1,2", 2).contains("--aov"));
 }

@@ -6,8 +6,9 @@ mod devices;
 
 use common::running::Running;
 use common::{Folder, stderr};
+use luminaire::glam::Vec3;
 use luminaire::picture;
-use luminaire::scene::load;
+use luminaire::scene::{Pivot, load};
 use std::time::SystemTime;
 
 /// A room with a lamp, in which walls differ; one is open, towards +x.
@@ -74,7 +75,8 @@ fn a_frame_is_the_picture_of_the_turned_camera() {
         let rest = format!("--backend {backend} --aov");
         run(&folder, &format!("render room.toml --turntable 7 {rest} -o {backend}-%d.exr"));
         for frame in [0, 2, 6] {
-            folder.write("turned.toml", &scene(sensor.turned(f64::from(frame) / 7.0).position.to_array()));
+            let turned = sensor.turned(f64::from(frame) / 7.0, Pivot::Target);
+            folder.write("turned.toml", &scene(turned.position.to_array()));
             run(&folder, &format!("render turned.toml {rest} -o turned.exr"));
             let pixels = |name: &str| picture::read(&folder.path().join(name)).unwrap();
             let (found, expected) = (pixels(&format!("{backend}-{frame}.exr")), pixels("turned.exr"));
@@ -177,6 +179,13 @@ fn what_makes_no_sense_is_refused() {
         ("textured.toml --turntable 4 -o sky.png", "a file of the scene"),
         ("textured.toml --turntable 4 -o sky-%04d.png", "a file of the scene"),
         ("room.toml --orbit 4", "--turntable N"),
+        ("room.toml --turntable -3", "from 1 to 10000"),
+        ("room.toml --turntable --aov", "a value is required for '--turntable"),
+        ("room.toml --turntable 4 --frames -1..2", "0..60 or 60..120"),
+        ("room.toml --turntable 4 --frames=-1..2", "0..60 or 60..120"),
+        ("room.toml --turntable 4 -o a-%4d.png", "say %04d"),
+        ("room.toml --pivot camera", "--turntable"),
+        ("room.toml --turntable 4 --pivot moon", "auto, target, camera"),
     ] {
         let words: Vec<&str> = ["render"].into_iter().chain(line.split(' ')).collect();
         let output = folder.luminaire(&words).output().unwrap();
@@ -185,6 +194,61 @@ fn what_makes_no_sense_is_refused() {
         assert_eq!(folder.names(), before, "{line}");
     }
     assert_eq!(std::fs::read(folder.path().join("room-0001.png")).unwrap(), b"precious");
+}
+
+/// A closed room, its lamp the ceiling, and the camera in it at an end: it looks around, whoever renders which frames, unless it is to go around.
+#[test]
+fn in_a_room_the_camera_turns_on_the_spot() {
+    let folder = folder();
+    let mesh = std::fs::read_to_string(folder.path().join("room.obj")).unwrap();
+    folder.write("closed.obj", &(mesh + "usemtl green\nf 2 3 7 6\n"));
+    let closed = |position: Vec3, target: Vec3| {
+        let [[x, y, z], [a, b, c]] = [position.to_array(), target.to_array()];
+        format!(
+            "[film]\nwidth = 8\nheight = 6\n[sensor]\nposition = [{x:?}, {y:?}, {z:?}]\ntarget = [{a:?}, {b:?}, {c:?}]\nfov = 50\n[render]\nspp = 2\n\
+             [[object]]\nmesh = \"closed.obj\"\n"
+        )
+    };
+    let (position, target) = (Vec3::new(0.75, 0.25, 0.5), Vec3::new(-0.75, 0.0, 0.25));
+    folder.write("closed.toml", &closed(position, target));
+    let note = "the camera stands in a room: it turns on the spot";
+    let [_, said] = run(&folder, "render closed.toml --backend cpu --turntable 5 -o a-%d.exr --stats s.json");
+    assert!(said.contains(note) && !said.contains("warning"), "{said}");
+    assert_eq!(stats(&folder)["pivot"], "camera");
+    let [_, said] = run(&folder, "render closed.toml --backend cpu --turntable 5 --frames 3..4 -o b-%d.exr");
+    assert!(said.contains(note), "{said}");
+    let sensor = load(&folder.path().join("closed.toml")).unwrap().sensor;
+    folder.write("turned.toml", &closed(position, sensor.turned(0.6, Pivot::Position).target));
+    run(&folder, "render turned.toml --backend cpu -o c.exr");
+    let pixels = |name: &str| picture::read(&folder.path().join(name)).unwrap().rgb;
+    assert!(pixels("a-3.exr") == pixels("b-3.exr") && pixels("a-3.exr") == pixels("c.exr"));
+
+    // Other frames than these are on the way around, of which nothing is said to somebody who asks for it.
+    let line = "render closed.toml --backend cpu --turntable 5 -o a-%d.exr --stats s.json --pivot";
+    let [said, noted] = run(&folder, &format!("{line} target"));
+    assert!(said.contains("4 rendered, 1 kept") && !noted.contains("on the spot"), "{said}{noted}");
+    assert!(stats(&folder)["pivot"] == "target" && pixels("a-3.exr") != pixels("b-3.exr"));
+    let [said, _] = run(&folder, &format!("{line} camera"));
+    assert!(said.contains("4 rendered, 1 kept") && pixels("a-3.exr") == pixels("b-3.exr"), "{said}");
+    // Through the open side from outside: around, and those frames are named that look at walls.
+    let [_, said] = run(&folder, "render room.toml --backend cpu --turntable 4 -o d-%d.png");
+    assert!(
+        said.contains("warning: room.toml: on its turn the camera comes to where something stands before its target"),
+        "{said}"
+    );
+    assert!(said.contains("about frames 1 to 3 of 0 to 3"), "{said}");
+}
+
+#[test]
+fn a_number_in_a_name_of_one_picture_is_noted() {
+    let folder = folder();
+    let line = "render room.toml --backend cpu --width 4 --spp 1 -o";
+    let [_, said] = run(&folder, &format!("{line} one%d.png"));
+    assert!(
+        said.contains("one%d.png: one picture has no number") && folder.path().join("one%d.png").exists(),
+        "{said}"
+    );
+    assert!(!run(&folder, &format!("{line} 100%.png"))[1].contains("number"));
 }
 
 #[test]

@@ -14,12 +14,10 @@ pub struct FrameName {
     after: OsString,
     /// The least length of the number.
     digits: usize,
-    /// What fills it up.
-    fill: char,
 }
 
 impl FrameName {
-    /// The name that `-o` gives: `%d` is the number, `%4d` one of four places, `%04d` one of four digits, and `%%` a percent sign. Without a number it is
+    /// The name that `-o` gives: `%d` is the number, `%04d` one of four digits, and `%%` a percent sign. Without a number it is
     /// put before the ending.
     ///
     /// # Errors
@@ -32,7 +30,7 @@ impl FrameName {
             ))
         };
         let mut parts = [String::new(), String::new()];
-        let mut number: Option<(usize, char)> = None;
+        let mut number: Option<usize> = None;
         let mut rest = text;
         while let Some((before, behind)) = rest.split_once('%') {
             let part = &mut parts[usize::from(number.is_some())];
@@ -51,10 +49,12 @@ impl FrameName {
             if number.is_some() {
                 return Err(wrong("it has two numbers of a frame"));
             }
-            let fill = if length.starts_with('0') { '0' } else { ' ' };
             // No digits: as many as the number has.
             number = match length.parse().or(if digits == 0 { Ok(0) } else { Err(()) }) {
-                Ok(length @ 0..=9) => Some((length, fill)),
+                Ok(2..=9) if !length.starts_with('0') => {
+                    return Err(wrong(&format!("`%{length}d` puts blanks before the number: say %0{length}d")));
+                }
+                Ok(length @ 0..=9) => Some(length),
                 _ => return Err(wrong("that many digits have no number")),
             };
             rest = behind;
@@ -62,7 +62,7 @@ impl FrameName {
         parts[usize::from(number.is_some())] += rest;
         let [before, after] = parts;
         Ok(match number {
-            Some((digits, fill)) => FrameName { before: before.into(), after: after.into(), digits, fill },
+            Some(digits) => FrameName { before: before.into(), after: after.into(), digits },
             None => Self::plain(before.as_ref()),
         })
     }
@@ -76,15 +76,19 @@ impl FrameName {
             after.push(".");
             after.push(ending);
         }
-        FrameName { before, after, digits: DIGITS, fill: '0' }
+        FrameName { before, after, digits: DIGITS }
+    }
+
+    /// Whether a name has a place for a number, as one of a frame would have it.
+    pub fn is_one(path: &Path) -> bool {
+        let plain = path.to_str().is_none_or(|text| !text.replace("%%", "").contains('%'));
+        !plain && Self::of(path).is_ok()
     }
 
     /// The name of a frame's file.
     pub fn file(&self, frame: u32) -> PathBuf {
-        let number = frame.to_string();
-        let fill = self.fill.to_string().repeat(self.digits.saturating_sub(number.len()));
         let mut name = self.before.clone();
-        name.push(fill + &number);
+        name.push(format!("{frame:0digits$}", digits = self.digits));
         name.push(&self.after);
         name.into()
     }
@@ -100,7 +104,9 @@ mod tests {
             ("frame-%04d.png", 7, "frame-0007.png"),
             ("frame-%04d.png", 12_345, "frame-12345.png"),
             ("%d.exr", 0, "0.exr"),
-            ("a/%3d/x.png", 42, "a/ 42/x.png"),
+            ("a/%03d/x.png", 42, "a/042/x.png"),
+            ("a%1d.png", 42, "a42.png"),
+            ("a%0d.png", 42, "a42.png"),
             ("a%02i%%b.png", 3, "a03%b.png"),
             ("50%%.png", 3, "50%-0003.png"),
             ("frame.png", 0, "frame-0000.png"),
@@ -108,6 +114,11 @@ mod tests {
             ("none", 1, "none-0001"),
         ] {
             assert_eq!(FrameName::of(Path::new(name)).unwrap().file(frame), Path::new(file), "{name}");
+        }
+        for (name, is_one) in
+            [("a%d.png", true), ("a%03i.png", true), ("50%%d.png", false), ("100%.png", false), ("a.png", false)]
+        {
+            assert_eq!(FrameName::is_one(Path::new(name)), is_one, "{name}");
         }
         assert_eq!(FrameName::plain(Path::new("50%d.png")).file(1), Path::new("50%d-0001.png"));
     }
@@ -122,6 +133,8 @@ mod tests {
             ("%-4d.png", "`%-` is no number"),
             ("%d-%04d.png", "two numbers"),
             ("%0100d.png", "that many digits"),
+            ("x%4d.png", "blanks before the number: say %04d"),
+            ("%i-%2i.png", "two numbers"),
             ("%99999999999999999999d.png", "that many digits"),
         ] {
             let error = FrameName::of(Path::new(name)).unwrap_err();

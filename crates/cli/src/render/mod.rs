@@ -14,6 +14,7 @@ mod sequence;
 mod stats;
 mod summary;
 mod tracing;
+mod turn;
 #[cfg(feature = "shaderc")]
 mod watch;
 
@@ -21,6 +22,7 @@ pub use self::options::Options;
 
 use self::checkpoint::Checkpoint;
 use self::failing_tracer::FailingTracer;
+use self::frame_name::FrameName;
 use self::options::LARGEST_SIDE;
 use self::outcome::Outcome;
 use self::progress::Reporter;
@@ -29,7 +31,7 @@ use self::sequence::Sequence;
 use self::tracing::{layers, limits, note_renderer};
 use crate::shared::backend_name;
 use crate::shared::film_size::FilmSize;
-use crate::shared::foreseen::{Foreseen, foresee};
+use crate::shared::foreseen::{Foreseen, foresee_by};
 use crate::shared::interrupts;
 use crate::shared::outputs::Outputs;
 use crate::shared::printing::Notes;
@@ -62,6 +64,12 @@ pub fn run(options: &Options) -> Result<ExitCode> {
             sequence = Some(Sequence::of(options, frames, &mut outputs)?);
         } else {
             pictures = outputs::pictures(options, &mut outputs)?;
+            for path in pictures.iter().filter(|path| FrameName::is_one(path)) {
+                notes.note(&format!(
+                    "-o {}: one picture has no number, so this is its name; --turntable N renders several",
+                    path.display()
+                ));
+            }
         }
         outputs::declare_others(options, &mut outputs)?;
         checkpoint::declare(options, &mut outputs)?;
@@ -80,7 +88,11 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     outputs.check(scene.files.iter().map(|path| ("a file of the scene", &**path)))?;
     let own_film = scene.film;
     change(&mut scene, options)?;
-    let foreseen = foresee(&mut scene, &own_film);
+    let mut tracer = None;
+    if let Some(sequence) = &mut sequence {
+        sequence.decide(options.pivot, &mut scene, &mut tracer);
+    }
+    let foreseen = foresee_by(&mut scene, &own_film, tracer);
     scene.notes.iter().for_each(|note| notes.note(note));
     scene.warnings.iter().for_each(|warning| notes.warn(warning));
     foreseen.found.iter().for_each(|found| notes.note(found));

@@ -1,5 +1,6 @@
 //! What to render, and how.
 
+use super::turn::PivotName;
 use crate::shared::backend_name::BackendName;
 use crate::shared::camera::CameraOption;
 use crate::shared::counts::{pixels, samples, seed};
@@ -117,7 +118,7 @@ pub struct Options {
     #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = noise, help_heading = "Quality")]
     pub noise: Option<f64>,
     /// Render only samples number A to B - 1 of every pixel, as a part that `luminaire merge` joins with others; wants -o PART.exr.
-    #[arg(long, value_name = "A..B", value_parser = range, conflicts_with_all = ["spp", "time", "noise"], help_heading = "Quality")]
+    #[arg(long, value_name = "A..B", allow_negative_numbers = true, value_parser = range, conflicts_with_all = ["spp", "time", "noise"], help_heading = "Quality")]
     pub samples: Option<Range<u32>>,
     /// Width in pixels [default: the scene's, or from --height at the scene's aspect ratio].
     #[arg(long, value_name = "PIXELS", allow_negative_numbers = true, value_parser = pixels::<1, LARGEST_SIDE>, help_heading = "Quality")]
@@ -138,26 +139,29 @@ pub struct Options {
     #[arg(long, value_name = "FILE.exr", help_heading = "Long renders")]
     pub checkpoint: Option<PathBuf>,
     /// Seconds between two checkpoints.
-    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = seconds, requires = "checkpoint", help_heading = "Long renders")]
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, allow_negative_numbers = true, value_parser = seconds, requires = "checkpoint", help_heading = "Long renders")]
     pub checkpoint_every: f64,
     /// Go on from the checkpoint, on any backend or device; if there is none yet, start. Also gives a finished render more samples.
     #[arg(long, requires = "checkpoint", help_heading = "Long renders")]
     pub resume: bool,
 
-    /// Render N pictures of the camera turning once around the vertical axis through its target, counter-clockwise as seen from above; the first
-    /// one is the scene's own. -o frame-%04d.png says where their numbers stand. Pictures that are finished are kept by the same command.
-    #[arg(long, value_name = "N", value_parser = turntable, help_heading = "Sequences")]
+    /// Render N pictures of the camera turning once about the vertical axis through its target, or on the spot where it stands in a room, counter-clockwise as
+    /// seen from above; the first one is the scene's own. Vertical is y, or z where that is the camera's `up`. -o frame-%04d.png says where their numbers stand. Pictures that are finished are kept by the same command.
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = turntable, help_heading = "Sequences")]
     pub turntable: Option<u32>,
+    /// About what the camera of --turntable turns.
+    #[arg(long, value_name = "NAME", default_value = "auto", requires = "turntable", help_heading = "Sequences")]
+    pub pivot: PivotName,
     /// Render only frames A to B - 1 of the turn, as one of several machines.
-    #[arg(long, value_name = "A..B", value_parser = frames, requires = "turntable", help_heading = "Sequences")]
+    #[arg(long, value_name = "A..B", allow_negative_numbers = true, value_parser = frames, requires = "turntable", help_heading = "Sequences")]
     pub frames: Option<Range<u32>>,
 
     /// Trace one sample of one pixel again and print its path, instead of rendering; with --sample. What ends a render (--spp, --samples, ...) changes
     /// nothing about it.
-    #[arg(long, value_name = "X,Y", value_parser = pixel, requires = "sample", conflicts_with_all = REPLAY_CONFLICTS, help_heading = "Replay")]
+    #[arg(long, value_name = "X,Y", allow_negative_numbers = true, value_parser = pixel, requires = "sample", conflicts_with_all = REPLAY_CONFLICTS, help_heading = "Replay")]
     pub pixel: Option<Pixel>,
     /// The number of the sample that --pixel traces.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..i64::from(u32::MAX)), requires = "pixel", help_heading = "Replay")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(..i64::from(u32::MAX)), requires = "pixel", help_heading = "Replay")]
     pub sample: Option<u32>,
 
     /// Render again whenever a shader changes (the sources are in LUMINAIRE_SHADERS, or where the program was built).
@@ -230,6 +234,8 @@ mod tests {
             ["--backend", "gpu"],
             ["--turntable", "0"],
             ["--turntable", "10001"],
+            ["--pivot", "camera"],
+            ["--crop", "--aov"],
             ["--frames", "0..1"],
             ["--max-bounces", "1000001"],
         ] {

@@ -11,6 +11,7 @@ use super::progress::Reporter;
 use super::seconds::Seconds;
 use super::stats::Stats;
 use super::tracing::{layers, limits, note_renderer};
+use super::turn::{PivotName, Turn};
 use crate::shared::error_line::error_line;
 use crate::shared::exit_codes::{DEVICE_FAILED, INTERRUPTED};
 use crate::shared::foreseen::Foreseen;
@@ -21,8 +22,9 @@ use crate::shared::units::duration;
 use luminaire::backend::{self, Request};
 use luminaire::part::Provenance;
 use luminaire::picture::{self, Format};
+use luminaire::reference::Reference;
 use luminaire::render::{Cropped, End, Rendered, resume};
-use luminaire::scene::{Scene, Sensor};
+use luminaire::scene::{Pivot, Scene, Sensor};
 use luminaire::{Error, Result, files};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -33,6 +35,8 @@ use std::time::Instant;
 pub struct Sequence {
     /// Frames of the whole turn.
     turn: u32,
+    /// About what the camera turns.
+    pivot: Pivot,
     /// Those of this run, with their files.
     frames: Vec<(u32, Vec<PathBuf>)>,
 }
@@ -44,6 +48,8 @@ struct SequenceStats {
     scene: String,
     /// Frames of the whole turn.
     turntable: u32,
+    /// About what the camera turns: "target"; "camera": on the spot.
+    pivot: &'static str,
     /// "frames": all are there; "interrupted"; "failed".
     end: &'static str,
     frames: Vec<FrameStats>,
@@ -115,12 +121,25 @@ impl Sequence {
             }
             frames.push((frame, files));
         }
-        Ok(Sequence { turn, frames })
+        Ok(Sequence { turn, pivot: Pivot::Target, frames })
+    }
+
+    /// Decides about what the camera turns, which the scene's notes and warnings tell; with a tracer, which is made and left there if one is needed.
+    pub fn decide(&mut self, wanted: PivotName, scene: &mut Scene, tracer: &mut Option<Reference>) {
+        if self.turn == 1 {
+            return;
+        }
+        let turn = Turn::of(scene, wanted, tracer);
+        self.pivot = turn.pivot;
+        let frames: Vec<u32> = self.frames.iter().map(|(frame, _)| *frame).collect();
+        let warning = turn.warning(&frames, self.turn);
+        scene.warnings.extend(warning.map(|warning| format!("{}: {warning}", scene.path.display())));
+        scene.notes.extend(turn.note);
     }
 
     /// The camera of a frame.
     fn sensor(&self, scene: &Scene, frame: u32) -> Sensor {
-        scene.sensor.turned(f64::from(frame) / f64::from(self.turn))
+        scene.sensor.turned(f64::from(frame) / f64::from(self.turn), self.pivot)
     }
 }
 
@@ -263,6 +282,10 @@ fn finish(
             version: env!("CARGO_PKG_VERSION"),
             scene: scene.path.display().to_string(),
             turntable: sequence.turn,
+            pivot: match sequence.pivot {
+                Pivot::Target => "target",
+                Pivot::Position => "camera",
+            },
             end: match end {
                 End::Stopped => "interrupted",
                 End::Failed(_) => "failed",

@@ -10,8 +10,8 @@ const MOST_NAMES: usize = 12;
 /// The camera to look through.
 #[derive(Debug, clap::Args)]
 pub struct CameraOption {
-    /// Which camera: the name of one of the scene's [[sensor]], or a file ending in .toml with a [sensor] and perhaps an exposure, as the window
-    /// writes with the key C [default: the scene's first].
+    /// Which camera: the name of one of the scene's [[sensor]], or a file ending in .toml with a [sensor] and perhaps `exposure` and `tone` in
+    /// [render], as the window writes with the key C [default: the scene's first].
     #[arg(long, value_name = "NAME|FILE.toml", help_heading = "Framing")]
     pub camera: Option<String>,
 }

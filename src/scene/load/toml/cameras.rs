@@ -61,7 +61,7 @@ pub(in crate::scene::load) struct CameraFile {
     pub exposure: Option<Exposure>,
     /// The tone curve, if it is there.
     pub tone: Option<Tone>,
-    /// Which of its tables say nothing about a camera, as they are written.
+    /// Which of its tables, and keys of `[render]`, say nothing about a camera, as they are written.
     pub others: Vec<&'static str>,
 }
 
@@ -74,14 +74,18 @@ pub(in crate::scene::load) fn camera_file(path: &Path, origin: DVec3) -> Result<
     if cameras.is_empty() {
         return Err(Error::scene(path, "no [sensor] in it: key C of `luminaire view` writes a file with one"));
     }
-    let SceneFile { film, sensor: _, environment, integrator: _, render, object, material, luminaire, ground } = tables;
+    let SceneFile { film, sensor: _, environment, integrator, render, object, material, luminaire, ground } = tables;
     let others = [
         (film.is_some(), "[film]"),
         (environment.is_some(), "[environment]"),
         (ground.is_some(), "[ground]"),
+        (integrator.is_some(), "[integrator]"),
         (!object.is_empty(), "[[object]]"),
         (!material.is_empty(), "[[material]]"),
         (!luminaire.is_empty(), "[[luminaire]]"),
+        (render.spp.is_some(), "`spp`"),
+        (render.seed.is_some(), "`seed`"),
+        (render.sampler.is_some(), "`sampler`"),
     ];
     let others = others.into_iter().filter(|(there, _)| *there).map(|(_, name)| name).collect();
     Ok(CameraFile { cameras, exposure: render.exposure.map(|exposure| exposure.0), tone: render.tone, others })

@@ -56,7 +56,7 @@ impl File<'_> {
             (Some(true), None) => Some(GroundTable::default()),
         };
         let film = self.film(file.film)?;
-        let integrator = self.integrator(&file.integrator)?;
+        let integrator = self.integrator(&file.integrator.take().unwrap_or_default())?;
         // What is wrong in this file is said before any other file is read; where the origin is, only those know.
         let near = file.sensor.as_ref().map_or(DVec3::ZERO, |sensors| sensors.get_ref().near());
         let cameras = self.cameras(file.sensor.as_ref(), None)?;

@@ -17,8 +17,7 @@ pub(super) struct SceneFile {
     pub sensor: Option<Spanned<Sensors>>,
     pub environment: Option<Spanned<EnvironmentTable>>,
     pub ground: Option<GroundTable>,
-    #[serde(default)]
-    pub integrator: IntegratorTable,
+    pub integrator: Option<IntegratorTable>,
     #[serde(default)]
     pub render: RenderTable,
     #[serde(default)]
