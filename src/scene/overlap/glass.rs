@@ -134,7 +134,8 @@ impl Parter<'_> {
                 }
             },
         );
-        let like = touching.iter().filter(|(a, b, ..)| self.may_be_one(*a, *b)).flat_map(|(a, b, ..)| [*a, *b]).collect();
+        let like =
+            touching.iter().filter(|(a, b, ..)| self.may_be_one(*a, *b)).flat_map(|(a, b, ..)| [*a, *b]).collect();
         let doubled = doubled(&self.faces, &like);
         // Of two of glass the later one gives way, so that the earlier one's place is known.
         touching.sort_unstable_by_key(|(later, earlier, ..)| (*later, *earlier));
