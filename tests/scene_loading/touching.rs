@@ -68,6 +68,60 @@ fn what_does_not_touch_stays_as_it_is() {
     }
 }
 
+/// A file with six digits, turned: corners of faces that touch are off each other's plane.
+#[test]
+fn what_touches_but_for_the_rounding_of_the_file_is_drawn_in() {
+    let turned = |body: String| {
+        let (sine, cosine) = 0.7_f64.sin_cos();
+        let turn = |line: &str| {
+            let Some(place) = line.strip_prefix("v ") else { return format!("{line}\n") };
+            let p: Vec<f64> = place.split(' ').map(|x| 100.0 * x.parse::<f64>().expect("a number")).collect();
+            let (x, y) = (cosine * p[0] - sine * p[1], sine * p[0] + cosine * p[1]);
+            let (y, z) = (cosine * y - sine * p[2], sine * y + cosine * p[2]);
+            format!("v {x:.3} {y:.3} {z:.3}\n")
+        };
+        body.lines().map(turn).collect::<String>()
+    };
+    let unit = |material| cuboid(material, [0.0; 3], [1.0; 3]);
+    let beside = |x: f64, material| cuboid(material, [x, 0.1, 0.2], [2.0, 0.7, 0.8]);
+    for (name, second) in [
+        ("another glass", beside(1.0, "water")),
+        ("the same glass", beside(1.0, "glass")),
+        ("a small overlap", beside(1.0 - 5e-5, "water")),
+        ("a small overlap of the same glass", beside(1.0 - 5e-5, "glass")),
+    ] {
+        let scene = placed(&turned(unit("glass") + &second), &[""]);
+        println!("{name}: {:?}", scene.warnings);
+        warned(&scene, &["2 triangle(s) of glass", "drawn in"]);
+        assert!(
+            !scene.warnings.iter().any(|warning| warning.contains("reach through")),
+            "{name}: {:?}",
+            scene.warnings
+        );
+        assert_eq!(scene.clone().part_touching_glass(), Vec::<String>::new(), "{name}");
+    }
+    // What rays tell apart stays: gaps, the sides of a thin plate, a wall between two surfaces of one body.
+    let inner = cuboid("glass", [5e-5; 3], [1.0 - 5e-5; 3]);
+    let reversed = |line: &str| match line.strip_prefix("f ") {
+        Some(face) => format!("f {}\n", face.split(' ').rev().collect::<Vec<_>>().join(" ")),
+        None => format!("{line}\n"),
+    };
+    for (name, mesh) in [
+        ("a gap of a thousandth", unit("glass") + &beside(1.001, "water")),
+        ("a gap of a ten-thousandth", unit("glass") + &beside(1.0001, "glass")),
+        ("a thin plate", cuboid("glass", [0.0; 3], [1.0, 5e-5, 1.0])),
+        ("a thin wall", unit("glass") + &inner.lines().map(reversed).collect::<String>()),
+    ] {
+        let scene = placed(&turned(mesh), &[""]);
+        let touching = |warning: &&String| warning.contains("drawn in") || warning.contains("left as they are");
+        assert_eq!(scene.warnings.iter().filter(touching).count(), 0, "{name}: {:?}", scene.warnings);
+    }
+    // Too thin a body stays, and that is said.
+    let foil = cuboid("water", [1.0 - 2e-5, 0.1, 0.2], [1.0 + 3e-5, 0.7, 0.8]);
+    let scene = placed(&turned(unit("glass") + &foil), &[""]);
+    warned(&scene, &["2 triangle(s) of glass", "left as they are", "too thin"]);
+}
+
 /// What is opaque stays where it is, and glass is drawn in by a hair, with all its faces.
 #[test]
 fn a_hair_is_small_and_bodies_stay_closed() {

@@ -69,10 +69,10 @@ impl Face {
         key
     }
 
-    /// A box around it, and around what may be in the same place.
-    pub(super) fn bounds(&self) -> Aabb {
+    /// A box around it, and around what may be in the same place, or nearer than `margin`.
+    pub(super) fn bounds(&self, margin: f64) -> Aabb {
         let [a, b, c] = self.corners;
-        let pad = DVec3::splat(2.0 * SAME_PLACE * self.reach);
+        let pad = DVec3::splat(margin.max(2.0 * SAME_PLACE * self.reach));
         let (low, high) = (a.min(b).min(c) - pad, a.max(b).max(c) + pad);
         Aabb::new(Vec3A::from(low.as_vec3()), Vec3A::from(high.as_vec3()))
     }
@@ -100,6 +100,16 @@ impl Face {
         (USUAL_LIFT * self.reach.max(self.size)).min(self.most_lift())
     }
 
+    /// Its longest edge.
+    pub(super) fn size(&self) -> f64 {
+        self.size
+    }
+
+    /// Its largest coordinate.
+    pub(super) fn reach(&self) -> f64 {
+        self.reach
+    }
+
     fn most_lift(&self) -> f64 {
         let [a, b, c] = self.corners;
         // The side of the square of which it would be half.
@@ -112,7 +122,7 @@ impl Face {
     }
 
     /// How far another one may lie off its plane, and still be taken to lie in it.
-    fn tolerance(&self, other: &Face) -> f64 {
+    pub(super) fn tolerance(&self, other: &Face) -> f64 {
         (SAME_PLACE * self.reach.max(other.reach)).min(LEAST_SHAPE * self.size.min(other.size))
     }
 

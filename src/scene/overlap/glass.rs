@@ -3,6 +3,7 @@
 //! What is meant is that they touch, and a hair between them looks the same: a body of glass is drawn in there, so that it stays closed, and a thin pane
 //! goes off what it lies on.
 
+use super::contact::{Separation, Surfaces, margin, separation, told_apart};
 use super::doubled::doubled;
 use super::edits::Edits;
 use super::face::{Face, Relation};
@@ -10,6 +11,7 @@ use super::pull::Depth;
 use super::report::Found;
 use super::search::{Near, select};
 use crate::scene::{Material, Scene};
+use std::cell::OnceCell;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Glass of more triangles is not compared with anything.
@@ -54,7 +56,7 @@ impl Scene {
         if faces.is_empty() {
             return Vec::new();
         }
-        let near = Near::new(&faces, (0..faces.len()).collect());
+        let near = Near::new(&faces, (0..faces.len()).collect(), margin);
         let mut parter = Parter {
             scene: self,
             faces,
@@ -109,11 +111,12 @@ impl Parter<'_> {
     /// Finds what lies in one plane; false if there is too much to look at all.
     fn compare(&mut self, near: &Near) -> bool {
         let scene = self.scene;
-        let mut touching: Vec<(usize, usize, Relation)> = Vec::new();
-        let mut searched = near.each_pair(|a, b| {
-            let relation = relation(&self.faces[a], &self.faces[b]);
-            if relation != Relation::Apart {
-                touching.push((b, a, relation));
+        let mut touching: Vec<(usize, usize, Relation, Separation)> = Vec::new();
+        // Only what is no plane exactly asks for them.
+        let surfaces = OnceCell::new();
+        let mut searched = near.each_pair(|earlier, later| {
+            if let Some((relation, separation)) = self.between(later, earlier, &surfaces) {
+                touching.push((later, earlier, relation, separation));
             }
         });
         let others: Vec<bool> = scene.materials.iter().map(|material| !material.transmits()).collect();
@@ -123,26 +126,51 @@ impl Parter<'_> {
             |_| true,
             |other, near| {
                 for index in near {
-                    if relation(&self.faces[*index], &other) != Relation::Apart {
-                        self.on_another(*index, &other);
+                    if let Some((_, separation)) = contact(&self.faces[*index], &other) {
+                        if separation.is_within(told_apart(scene, &self.faces[*index], &other)) {
+                            self.on_another(*index, &other, separation);
+                        }
                     }
                 }
             },
         );
-        let like = touching.iter().filter(|(a, b, _)| self.may_be_one(*a, *b)).flat_map(|(a, b, _)| [*a, *b]).collect();
+        let like =
+            touching.iter().filter(|(a, b, ..)| self.may_be_one(*a, *b)).flat_map(|(a, b, ..)| [*a, *b]).collect();
         let doubled = doubled(&self.faces, &like);
         // Of two of glass the later one gives way, so that the earlier one's place is known.
-        touching.sort_unstable_by_key(|(later, earlier, _)| (*later, *earlier));
-        for (later, earlier, relation) in touching {
+        touching.sort_unstable_by_key(|(later, earlier, ..)| (*later, *earlier));
+        for (later, earlier, relation, separation) in touching {
             let surface = doubled.contains(&later) && doubled.contains(&earlier);
             // What becomes of a body that is there twice: nothing. The check of bodies says so.
             let twice = self.may_be_one(later, earlier)
                 && (surface || relation == Relation::Same && self.same_way(later, earlier));
             if !twice {
-                self.on_glass(later, earlier);
+                self.on_glass(later, earlier, separation);
             }
         }
         searched
+    }
+
+    /// How two faces of glass lie, if they touch, and how far the earlier one is from the later.
+    fn between(&self, later: usize, earlier: usize, surfaces: &OnceCell<Surfaces>) -> Option<(Relation, Separation)> {
+        let (face, other) = (&self.faces[later], &self.faces[earlier]);
+        let (relation, separation) = contact(face, other)?;
+        if separation == Separation::NONE {
+            return Some((relation, separation));
+        }
+        let near = told_apart(self.scene, face, other);
+        let bodies = !self.material(face).thin && !self.material(other).thin;
+        let touch = if bodies && !self.same_way(later, earlier) {
+            // A body that reaches into another one is met before that is left.
+            let side_by_side = || {
+                let surfaces = surfaces.get_or_init(|| Surfaces::new(&self.faces));
+                surfaces.are_side_by_side(&self.faces, later, earlier)
+            };
+            separation.least < near && (face.material != other.material || side_by_side())
+        } else {
+            separation.is_within(near)
+        };
+        touch.then_some((relation, separation))
     }
 
     fn same_way(&self, a: usize, b: usize) -> bool {
@@ -164,37 +192,39 @@ impl Parter<'_> {
     }
 
     /// What becomes of a face of glass that touches one that lets no light through.
-    fn on_another(&mut self, index: usize, other: &Face) {
+    fn on_another(&mut self, index: usize, other: &Face, separation: Separation) {
         let needed = self.faces[index].needed(self.scene, other);
         if self.material(&self.faces[index]).thin {
-            self.move_pane(index, other, needed);
+            self.move_pane(index, other, needed, separation);
         } else {
-            self.draw_in(index, needed, None);
+            self.draw_in(index, needed, separation.overlap());
         }
     }
 
     /// What becomes of a face of glass that touches an earlier one of glass.
-    fn on_glass(&mut self, later: usize, earlier: usize) {
+    fn on_glass(&mut self, later: usize, earlier: usize, separation: Separation) {
         let (face, other) = (self.faces[later].clone(), self.faces[earlier].clone());
         let needed = face.needed(self.scene, &other);
         match (self.material(&face).thin, self.material(&other).thin) {
-            (false, true) => self.draw_in(later, needed, None),
-            (true, false) => self.draw_in(earlier, needed, None),
+            (false, true) => self.draw_in(later, needed, separation.overlap()),
+            (true, false) => {
+                let separation = separation.from_the_other(self.same_way(later, earlier));
+                self.draw_in(earlier, needed, separation.overlap());
+            }
             (true, true) if face.material == other.material => {
                 self.leave(|report| &mut report.panes_in_one_place, later);
             }
-            (true, true) => self.move_pane(later, &other, needed),
+            (true, true) => self.move_pane(later, &other, needed, separation),
             (false, false) => {
                 let behind = self.depths.get(&earlier).copied().filter(|_| self.same_way(later, earlier));
-                self.draw_in(later, needed, behind);
+                self.draw_in(later, needed, separation.overlap() + behind.map_or(0.0, |depth| depth.usual));
             }
         }
     }
 
-    /// Draws a face of a body in at least so far, and if another one that faces the same way is drawn in itself, so much further.
-    fn draw_in(&mut self, index: usize, needed: f64, behind: Option<Depth>) {
+    /// Draws a face of a body in at least so far, behind where something else is or goes to, which is so far behind the face.
+    fn draw_in(&mut self, index: usize, needed: f64, behind: f64) {
         let face = &self.faces[index];
-        let behind = behind.map_or(0.0, |depth| depth.usual);
         let depth = Depth { usual: needed.max(face.usual_lift()) + behind, least: needed + behind };
         if !self.depths.contains_key(&index) {
             self.report.bodies.add(1, || face.describe(self.scene));
@@ -203,9 +233,10 @@ impl Parter<'_> {
     }
 
     /// Moves a pane off a face, to the side to which that faces.
-    fn move_pane(&mut self, index: usize, other: &Face, needed: f64) {
+    fn move_pane(&mut self, index: usize, other: &Face, needed: f64, separation: Separation) {
         let face = &self.faces[index];
-        let Some(by) = face.lift(needed) else {
+        let behind = separation.from_the_other(face.normal.dot(other.normal) > 0.0).overlap();
+        let Some(by) = face.lift(needed + behind) else {
             self.leave(|report| &mut report.stuck, index);
             return;
         };
@@ -218,9 +249,15 @@ impl Parter<'_> {
     }
 }
 
-/// How two faces lie; what is not even nearly parallel is apart.
-fn relation(a: &Face, b: &Face) -> Relation {
-    if a.normal.dot(b.normal).abs() < PARALLEL { Relation::Apart } else { a.relation(b) }
+/// How two faces lie, and how far the other one is from the first; none of what is apart, or not even nearly parallel.
+fn contact(face: &Face, other: &Face) -> Option<(Relation, Separation)> {
+    if face.normal.dot(other.normal).abs() < PARALLEL {
+        return None;
+    }
+    match face.relation(other) {
+        Relation::Apart => separation(face, other).map(|separation| (Relation::Overlapping, separation)),
+        relation => Some((relation, Separation::NONE)),
+    }
 }
 
 impl Report {

@@ -231,7 +231,7 @@ impl Merger<'_> {
     /// Compares what is left: first with each other, then the rest of the scene with the lamps.
     fn compare(&mut self, edits: &mut Edits) {
         let left: Vec<usize> = (0..self.faces.len()).filter(|index| !self.dropped[*index]).collect();
-        let near = Near::new(&self.faces, left);
+        let near = Near::new(&self.faces, left, |_| 0.0);
         let searched = near.each_pair(|index, other| {
             if !self.dropped[index] && !self.dropped[other] {
                 match self.faces[index].relation(&self.faces[other]) {

@@ -1,5 +1,6 @@
 //! What lies in one place twice, or in the plane of something else: lamps (`lamps.rs`), and glass that touches other surfaces (`glass.rs`).
 
+mod contact;
 mod doubled;
 mod edits;
 mod face;

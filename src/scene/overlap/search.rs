@@ -55,9 +55,10 @@ pub(super) struct Near {
 }
 
 impl Near {
-    /// The tree of these ones of the faces.
-    pub(super) fn new(faces: &[Face], numbers: Vec<usize>) -> Self {
-        let boxes: Vec<Aabb> = numbers.iter().map(|index| faces[*index].bounds()).collect();
+    /// The tree of these ones of the faces, each with a margin around it.
+    pub(super) fn new(faces: &[Face], numbers: Vec<usize>, margin: impl Fn(&Face) -> f64) -> Self {
+        let boxes: Vec<Aabb> =
+            numbers.iter().map(|index| &faces[*index]).map(|face| face.bounds(margin(face))).collect();
         let indices = (0..boxes.len() as u32).collect();
         let mut builder = PlocBuilder::with_capacity(boxes.len());
         let bvh = builder.build(PlocSearchDistance::Minimum, &boxes, indices, SortPrecision::U64, 0);

@@ -99,13 +99,14 @@ fn findings(touching: &[(&str, &str, f64)], verdicts: &[Verdict]) -> Findings {
             until(REFERENCE, |end| format!(", in gaps narrower than {end}"))
         ),
         mends: format!(
-            "The bound is some units in the last place of the size{}. Where faces of glass coincide with others, the loader draws their body in by a \
-             hair, so that a mean of 1 is what users see; this sweep leaves that out. luminaire has no priorities of nested media.",
+            "The bound is some units in the last place of the size{}. Where faces of glass coincide with others, or nearly (nearer than rays tell apart, as after \
+             the rounding of files, or overlapping by up to 1e-4 of the size of their triangles), the loader draws their body in by that and a hair, so that a \
+             mean of 1 is what users see; this sweep leaves that out. luminaire has no priorities of nested media.",
             until(COMPUTE_BVH, |end| format!(", so that gaps of {end} and more are safe"))
         ),
         sees: format!(
-            "Nothing in scenes that are loaded, but for a hair of air between glass and what it touches; a warning says so. In scenes built in code, glass \
-             that touches is too bright or too dark in patches: call `Scene::part_touching_glass`{}. Where there is no air between, as between a liquid and \
+            "In scenes that are loaded, a hair of air between glass and what it touches; a warning says so. Bodies that are too thin to be drawn in stay, and a \
+             warning says that, too; finely cut faces that overlap by more than their file rounds may stay without one. There, and in scenes built in code, glass that touches is too bright or too dark in patches: call `Scene::part_touching_glass`{}. Where there is no air between, as between a liquid and \
              its glass, model the common face once, with the ratio of both indices.",
             safe_until(verdicts, COMPUTE_BVH)
                 .map_or(String::new(), |end| format!(", or leave a gap of {end} of the size"))
