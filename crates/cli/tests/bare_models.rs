@@ -79,7 +79,7 @@ fn one_line_says_what_was_chosen() {
     let lines: Vec<&str> = said.lines().filter(|line| line.starts_with("bare model: ")).collect();
     let [line] = lines[..] else { panic!("{said}") };
     // The command can be copied into a shell.
-    let command = "`luminaire scene 'my models/it'\\''s a \"model\".obj' > 'it'\\''s a \"model\".toml'`";
+    let command = "`luminaire scene 'my models/it'\\''s a \"model\".obj' -o 'it'\\''s a \"model\".toml'`";
     assert!(line.contains("studio sky, ground at y = ") && line.contains(command), "{line}");
     assert!(!said.contains("warning"), "{said}");
     let (code, _, said) = run(&folder, &[&words[..], &["--quiet"]].concat());
@@ -90,7 +90,7 @@ fn one_line_says_what_was_chosen() {
     let (code, report, _) = run(&folder, &["inspect", MODEL, "--sky", "none", "--ground", "off"]);
     assert!(code == 0 && report.contains("the picture will be black"), "{report}");
     assert!(report.contains("bare model: no sky, no ground"), "{report}");
-    let command = "`luminaire scene good.obj --sky 1,0.5,0 --ground on --smooth 30 --up z > good.toml`";
+    let command = "`luminaire scene good.obj --sky 1,0.5,0 --ground on --smooth 30 --up z -o good.toml`";
     let words = ["inspect", "good.obj", "--up", "z", "--smooth", "30", "--ground", "on", "--sky", "1,.5,0"];
     let (_, report, _) = run(&folder, &words);
     assert!(report.contains(command), "{report}");

@@ -95,7 +95,7 @@ fn command_lines() {
         ("render room.toml --camera none.toml", 1, &["none.toml"]),
         ("render room.toml --fov 40", 2, &["[sensor]", "--camera FILE.toml"]),
         ("bench room.toml --camera main", 2, &["--camera"]),
-        ("render room.toml --envmap sky.hdr", 2, &["[environment]"]),
+        ("render room.toml --envmap sky.hdr", 2, &["--sky FILE.hdr", "[[luminaire]]"]),
         ("render room.toml --gamma 2.2", 2, &["--exposure"]),
         ("render room.toml --view-transform AgX", 2, &["--tone", "agx"]),
         ("view room.toml --tonemap filmic", 2, &["--tone", "neutral"]),
