@@ -25,7 +25,7 @@ impl Separation {
     pub(super) const NONE: Separation = Separation { least: 0.0, most: 0.0 };
 
     /// The same, seen from the other face.
-    pub(super) fn from_the_other(self, same_way: bool) -> Self {
+    pub(super) fn of_the_other(self, same_way: bool) -> Self {
         if same_way { Separation { least: -self.most, most: -self.least } } else { self }
     }
 
@@ -60,6 +60,11 @@ pub(super) fn told_apart(scene: &Scene, face: &Face, other: &Face) -> f64 {
 
 /// How far another face lies from one over what they have in common, if that is an area and they are everywhere there about as near as files round.
 pub(super) fn separation(face: &Face, other: &Face) -> Option<Separation> {
+    // Neighbours in the surface of a body, which are the most of what is near.
+    let meet = || face.corners.iter().any(|p| other.corners.contains(p));
+    if face.object == other.object && face.normal.dot(other.normal) > 0.0 && meet() {
+        return None;
+    }
     let most = most_off(face, other);
     let (large, small, sign) = if face.size() >= other.size() { (face, other, 1.0) } else { (other, face, -1.0) };
     let corners = large.corners;

@@ -126,10 +126,11 @@ impl Parter<'_> {
             |_| true,
             |other, near| {
                 for index in near {
-                    if let Some((_, separation)) = contact(&self.faces[*index], &other) {
-                        if separation.is_within(told_apart(scene, &self.faces[*index], &other)) {
-                            self.on_another(*index, &other, separation);
-                        }
+                    let face = &self.faces[*index];
+                    if let Some((_, separation)) = contact(face, &other)
+                        && separation.is_within(told_apart(scene, face, &other))
+                    {
+                        self.on_another(*index, &other, separation);
                     }
                 }
             },
@@ -208,7 +209,7 @@ impl Parter<'_> {
         match (self.material(&face).thin, self.material(&other).thin) {
             (false, true) => self.draw_in(later, needed, separation.overlap()),
             (true, false) => {
-                let separation = separation.from_the_other(self.same_way(later, earlier));
+                let separation = separation.of_the_other(self.same_way(later, earlier));
                 self.draw_in(earlier, needed, separation.overlap());
             }
             (true, true) if face.material == other.material => {
@@ -235,7 +236,7 @@ impl Parter<'_> {
     /// Moves a pane off a face, to the side to which that faces.
     fn move_pane(&mut self, index: usize, other: &Face, needed: f64, separation: Separation) {
         let face = &self.faces[index];
-        let behind = separation.from_the_other(face.normal.dot(other.normal) > 0.0).overlap();
+        let behind = separation.of_the_other(face.normal.dot(other.normal) > 0.0).overlap();
         let Some(by) = face.lift(needed + behind) else {
             self.leave(|report| &mut report.stuck, index);
             return;
