@@ -28,7 +28,7 @@ Space              pause
 
 P                  save what is shown as PNG
 O                  save the film as EXR
-C                  write camera, exposure, tone (--camera FILE)
+C                  write the camera (--camera FILE)
 
 H or ?             this help
 Esc                quit";
