@@ -16,26 +16,26 @@ pictures() {
 still-life             still-life/still-life.toml    1280 1024
 bare                   shapes/knot.obj               400 256
 cornell                cornell/cornell.toml          512 512
-simple                 simple/simple.toml            400 16
-shadows                shadows/shadows.toml          400 192
+simple                 simple/simple.toml            640 16
+shadows                shadows/shadows.toml          640 192
 directions-uniform     directions/directions.toml    288 64   --directions uniform
 directions-cosine      directions/directions.toml    288 64   --directions cosine
 directions-bsdf        directions/directions.toml    288 64
 extinction-reweighted  extinction/extinction.toml    288 192  --estimator cosine
 extinction-literal     extinction/extinction.toml    288 192  --estimator literal-extinction
 extinction-threshold   extinction/extinction.toml    288 192  --estimator cosine --albedo-threshold 0.3
-lamps                  lamps/lamps.toml              400 384
-mirror                 mirror/mirror.toml            400 192
-glass                  glass/glass.toml              400 448
-lens                   lens/lens.toml                400 192
-orthographic           lens/orthographic.toml        400 96
-textures               textures/textures.toml        400 160
-environment            environment/environment.toml  400 256
-many-lights            many-lights/many-lights.toml  400 320
+lamps                  lamps/lamps.toml              640 384
+mirror                 mirror/mirror.toml            640 192
+glass                  glass/glass.toml              640 448
+lens                   lens/lens.toml                640 192
+orthographic           lens/orthographic.toml        640 96
+textures               textures/textures.toml        640 160
+environment            environment/environment.toml  640 256
+many-lights            many-lights/many-lights.toml  640 320
 plates-direct          plates/plates.toml            288 64   --light-sampling direct
 plates-none            plates/plates.toml            288 64   --light-sampling none
 plates-mis             plates/plates.toml            288 64
-instances              instances/instances.toml      400 64
+instances              instances/instances.toml      640 64
 END
 }
 
