@@ -23,8 +23,9 @@ use self::solid::Solid;
 use self::surroundings::Bounds;
 use self::trial::Trial;
 use self::visit::{for_points, for_some_points};
-use super::{Projection, Scene, Sensor};
-use glam::{DMat3, DVec3, Vec2, Vec3};
+use super::build::pinhole;
+use super::{Scene, Sensor};
+use glam::{DMat3, DVec3, Vec3};
 
 /// Points that a trial picture is fitted to.
 const TRIAL_POINTS: usize = 4000;
@@ -79,14 +80,8 @@ impl Scene {
         let forward = eye.axes.z_axis;
         let target = middle + unit * (eye.position + eye.depth * forward);
         let distance = (unit * eye.depth).max(NEAREST * target.abs().max_element()).max(f64::from(f32::MIN_POSITIVE));
-        let sensor = Sensor {
-            position: (target - distance * forward).as_vec3(),
-            target: target.as_vec3(),
-            up,
-            projection: Projection::Perspective { fov: (2.0 * eye.tangents[1].atan()).to_degrees() as f32 },
-            lens: None,
-            shift: Vec2::ZERO,
-        };
+        let fov = (2.0 * eye.tangents[1].atan()).to_degrees() as f32;
+        let sensor = pinhole((target - distance * forward).as_vec3(), target.as_vec3(), up, fov);
         FirstView { sensor, inside: place == INSIDE, place }
     }
 }

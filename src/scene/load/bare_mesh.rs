@@ -5,15 +5,14 @@ use super::ground::{self, Ground};
 use super::loader::Loader;
 use super::{environment, footing, lamplight, obj, reach};
 use crate::Result;
+use crate::scene::build::pinhole;
 use crate::scene::{
-    Estimator, Exposure, FilmSettings, Filter, FirstView, Integrator, Luminaire, Object, Projection, RenderSettings,
-    Scene, Sensor, Tone, widen,
+    Estimator, Exposure, FilmSettings, Filter, FirstView, Integrator, Luminaire, Object, RenderSettings, Scene, Tone,
+    widen,
 };
-use glam::{Affine3A, DAffine3, DMat3, DVec3, Vec2, Vec3};
+use glam::{Affine3A, DAffine3, DMat3, DVec3, Vec3};
 use std::path::Path;
 
-/// Vertical field of view of the framing camera, in degrees.
-const FOV: f32 = 40.0;
 /// A scene whose emitting triangles have less than this share of its area is not meant to be lit by them alone: they glow, as
 /// lava in a landscape does. The lamp of a Cornell box has seven times as much.
 const LEAST_EMITTING: f64 = 1e-3;
@@ -83,14 +82,8 @@ pub(super) fn load(path: &Path, choices: &Choices) -> Result<BareMesh> {
         textures,
         luminaires: Vec::new(),
         environment: None,
-        sensor: Sensor {
-            position: Vec3::Z,
-            target: Vec3::ZERO,
-            up: Vec3::Y,
-            projection: Projection::Perspective { fov: FOV },
-            lens: None,
-            shift: Vec2::ZERO,
-        },
+        // Until the scene can be looked at.
+        sensor: pinhole(Vec3::Z, Vec3::ZERO, Vec3::Y, 40.0),
         cameras: Vec::new(),
         film: FILM,
         integrator: Integrator::Path(Estimator::default()),
@@ -190,10 +183,11 @@ fn options(choices: &Choices) -> String {
         Sky::Even(radiance) => format!("{},{},{}", radiance.x, radiance.y, radiance.z),
         Sky::Image(path) => for_a_shell(&path.to_string_lossy()),
     });
-    let ground = choices.ground.map(|on| if on { "on" } else { "off" }.to_owned());
+    let on_or_off = |on: bool| if on { "on" } else { "off" }.to_owned();
+    let ground = choices.ground.map(on_or_off);
     let smooth = choices.smooth.map(|degrees| degrees.to_string());
     let up = choices.up.map(|up| if up == Up::Z { "z" } else { "y" }.to_owned());
-    let fill = choices.fill.map(|on| if on { "on" } else { "off" }.to_owned());
+    let fill = choices.fill.map(on_or_off);
     let view = choices.view.map(|side| side.name().to_owned());
     let given = [("sky", sky), ("ground", ground), ("smooth", smooth), ("up", up), ("fill", fill), ("view", view)];
     given.into_iter().filter_map(|(name, value)| Some(format!(" --{name} {}", value?))).collect()

@@ -14,12 +14,13 @@ use super::choices::Choices;
 use super::ground::{self, Ground};
 use super::loader::Loader;
 use super::{environment, reach};
-use crate::scene::{Camera, FirstView, Projection, RenderSettings, Scene, Sensor};
+use crate::scene::build::pinhole;
+use crate::scene::{Camera, FirstView, Projection, RenderSettings, Scene};
 use crate::{Error, Result};
 use advice::{in_plain_words, wrong_brackets};
 pub(super) use cameras::camera_file;
 use file::{File, read_text};
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DVec3, Vec3};
 use std::path::Path;
 use tables::{GroundTable, SceneFile};
 
@@ -112,14 +113,8 @@ impl File<'_> {
             textures,
             luminaires,
             environment,
-            sensor: Sensor {
-                position: Vec3::Z,
-                target: Vec3::ZERO,
-                up: Vec3::Y,
-                projection: Projection::Perspective { fov: 40.0 },
-                lens: None,
-                shift: Vec2::ZERO,
-            },
+            // Until the scene can be looked at.
+            sensor: pinhole(Vec3::Z, Vec3::ZERO, Vec3::Y, 40.0),
             cameras,
             film,
             integrator,
