@@ -9,13 +9,20 @@ struct Path {
     uint bounce;        // surfaces met so far; NONE at the end of one that met nothing, where TRANSPARENT
     float pdf;          // density per steradian with which the path went there (`surviving`); or IMPULSE, also for the camera's
     float eta_scale;    // product of the squared relative indices that were passed, by which refraction diluted the throughput
+    bool scattered;     // by a lobe, at some surface before; unless there are no impulses
     vec3 albedo;        // product of the albedos (combinedAlbedo)
 };
 
 Path camera_path(uvec2 pixel, uint pixel_index, uint sample_index) {
     vec3 origin, direction;
     sensor_ray(pixel, pixel_index, sample_index, origin, direction);
-    return Path(origin, origin, direction, vec3(1.0), vec3(0.0), 0u, IMPULSE, 1.0, vec3(1.0));
+    return Path(origin, origin, direction, vec3(1.0), vec3(0.0), 0u, IMPULSE, 1.0, false, vec3(1.0));
+}
+
+// What roulette is told of the throughput at the surface that the path has met.
+vec3 roulette_throughput(Path path) {
+    bool begun = IMPULSES ? path.scattered || path.bounce >= SURE_IMPULSES : path.bounce > 0u;
+    return begun ? path.throughput * (DIELECTRICS ? path.eta_scale : 1.0) : vec3(AMPLE_THROUGHPUT);
 }
 
 // A path that would be longer is lost (src/reference/path.rs).
@@ -69,7 +76,7 @@ bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uve
     if (LIGHT_SAMPLING != LIGHT_NONE && (!IMPULSES || glossy_or_lambert)) {
         uvec4 random = numbers(pixel_index, sample_index, light_block(path.bounce), frame.seed);
         salt = HOLES ? ray_salt(pixel_index, sample_index, 2u * path.bounce + 1u, frame.seed) : 0u;
-        vec3 seen = path.throughput * (DIELECTRICS ? path.eta_scale : 1.0);
+        vec3 seen = roulette_throughput(path);
         path.radiance += path.throughput * direct_light(s, material, wo, seen, random, 1.0 - i.probability, salt, rays);
     }
     if (SIMPLE) return false;
@@ -104,12 +111,12 @@ bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uve
     }
     if (EXTINCTION == EXTINCTION_THROUGHPUT) {
         if (DIELECTRICS) path.eta_scale *= next.eta2;
-        float left = largest(path.throughput) * (DIELECTRICS ? path.eta_scale : 1.0);
-        float alive = min(left / SURE_THROUGHPUT, 1.0);
+        float alive = min(largest(roulette_throughput(path)) / SURE_THROUGHPUT, 1.0);
         if (!(uniform1(random.w) < alive)) return false;
         reweighted = alive;
         path.throughput /= alive;
     }
+    if (IMPULSES && next.pdf != IMPULSE) path.scattered = true;
     path.from = s.position;
     path.origin = offset_ray_origin(s.position, s.position_error, s.geometric_normal, next.wi);
     path.direction = next.wi;

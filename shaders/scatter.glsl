@@ -1,7 +1,10 @@
 // Which way a path goes on from a surface, and whether it does: impulses, the BSDF, extinction.
 
-// Russian roulette leaves paths of at least this throughput alone (src/reference/scatter.rs).
-const float SURE_THROUGHPUT = 0.4;
+// Russian roulette leaves paths of at least this throughput alone, those that no lobe has scattered yet for so many surfaces, and is told
+// of the last number there (src/reference/scatter.rs).
+const float SURE_THROUGHPUT = 0.3;
+const uint SURE_IMPULSES = 8u;
+const float AMPLE_THROUGHPUT = 1e20;
 
 // The share of light that a surface does not extinguish, for the channel that loses least.
 float survival(Material material) {
@@ -14,7 +17,7 @@ float survival(Material material) {
 
 // The density with which a path goes on to a direction that it chooses with the density `pdf`: extinction has to let it live. What the
 // power heuristic has to know; literal extinction is left out: its survivors do not stand for those that ended. `scattered` is the
-// throughput so far, without eta^2, times f cos.
+// throughput that roulette sees (`roulette_throughput`), times f cos.
 float path_pdf(float pdf, vec3 scattered, Material material) {
     if (EXTINCTION == EXTINCTION_SURFACE) return pdf * survival(material);
     if (EXTINCTION == EXTINCTION_THROUGHPUT) return min(largest(scattered) / SURE_THROUGHPUT, pdf);

@@ -288,6 +288,8 @@ fn twins() -> Vec<(&'static str, f64)> {
         ("SENSOR_BLOCK", SENSOR_BLOCK.into()),
         ("LONGEST_PATH", f64::from(path::LONGEST_PATH)),
         ("SURE_THROUGHPUT", scatter::SURE_THROUGHPUT),
+        ("SURE_IMPULSES", scatter::SURE_IMPULSES.into()),
+        ("AMPLE_THROUGHPUT", scatter::AMPLE_THROUGHPUT),
         ("NEAR", light::NEAR),
         ("LEAST_SOLID_ANGLE", light::LEAST_SOLID_ANGLE),
         ("UNIT_ROUNDOFF", bounds::UNIT_ROUNDOFF),

@@ -38,8 +38,9 @@ impl Reference {
     /// one over its probability; numbers 0 and 1 choose the point on it, with number 3 for an environment. `salt` is that of the
     /// shadow ray; it is added, if there is one, to `rays`.
     ///
-    /// `throughput` is the share of this radiance that reaches the camera, without `eta^2`, over the probability of the path: by it
-    /// [`path_pdf`] knows how likely the path itself is to find the luminaire.
+    /// `throughput` is the share of this radiance that reaches the camera, without `eta^2`, over the probability of the path, or what
+    /// [`roulette_throughput`](super::scatter::roulette_throughput) has in its place: by it [`path_pdf`] knows how likely the path itself is to
+    /// find the luminaire.
     pub fn direct_light(
         &self,
         surfel: &Surfel,

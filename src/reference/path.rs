@@ -3,7 +3,7 @@
 use super::hit::Hit;
 use super::luminaire::emission_weight;
 use super::prepared_scene::Reference;
-use super::scatter::{SURE_THROUGHPUT, scatter, survival};
+use super::scatter::{SURE_THROUGHPUT, roulette_throughput, scatter, survival};
 use crate::film::Rays;
 use crate::sampling::{light_block, ray_salt, scatter_block, uniform};
 use crate::scene::{Extinction, Integrator, LightSampling};
@@ -72,6 +72,8 @@ impl Reference {
         let mut eta_scale = 1.0;
         // Throughput without eta^2 and without extinction: the slides' `combinedAlbedo`.
         let mut combined_albedo = DVec3::ONE;
+        // Whether a lobe has scattered the path at a surface before.
+        let mut scattered_before = false;
         // Where the ray comes from, and the density with which the path went there; none for the camera and impulses.
         let mut from = DVec3::ZERO;
         let mut pdf = None;
@@ -100,7 +102,7 @@ impl Reference {
             if estimator.light_sampling != LightSampling::None {
                 let shadow = salt(2 * bounce + 1);
                 let random = numbers(light_block(bounce));
-                let seen = throughput * eta_scale;
+                let seen = roulette_throughput(throughput * eta_scale, bounce, scattered_before);
                 radiance += throughput * self.direct_light(&surfel, wo, seen, random, shadow, &mut rays);
             }
             if let Integrator::Simple { ambient } = self.scene.integrator {
@@ -149,13 +151,15 @@ impl Reference {
             }
             // Russian roulette by what is left of the whole path.
             if estimator.extinction == Extinction::Throughput {
-                let alive = ((throughput * eta_scale).max_element() / SURE_THROUGHPUT).min(1.0);
+                let seen = roulette_throughput(throughput * eta_scale, bounce, scattered_before);
+                let alive = (seen.max_element() / SURE_THROUGHPUT).min(1.0);
                 if random[3] >= alive {
                     break;
                 }
                 reweighted = alive;
                 throughput /= alive;
             }
+            scattered_before |= scattered.pdf.is_some();
             from = surfel.position;
             pdf = scattered.pdf.map(|pdf| pdf * reweighted);
             origin = surfel.offset_ray_origin(scattered.wi);

@@ -10,7 +10,21 @@ use crate::scene::{Directions, Estimator, Extinction};
 use glam::DVec3;
 
 /// Russian roulette lets a path live with its throughput over this as the probability: surely as long as it is larger. With 1 paths would end so early that their variance costs more than their rays save; `docs/performance.md` has the measurement.
-pub const SURE_THROUGHPUT: f64 = 0.4;
+pub const SURE_THROUGHPUT: f64 = 0.3;
+
+/// Roulette begins behind the first surface whose lobes scatter the path: how dark that surface is makes the whole pixel dark, and ending most of
+/// its paths there would be noise relative to all that it shows. The mirrors and the glass in front of it do not count either, but for chains
+/// of them as long as this, so that two dark mirrors that face each other cost no more.
+pub const SURE_IMPULSES: u32 = 8;
+
+/// The throughput that roulette is told of before it begins: so large that no lobe makes it small.
+pub const AMPLE_THROUGHPUT: f64 = 1e20;
+
+/// The throughput by which roulette decides at the surface number `bounce` of a path, counted from 0. `throughput` is without `eta^2`;
+/// `scattered` says whether a lobe has scattered the path at a surface before this one.
+pub fn roulette_throughput(throughput: DVec3, bounce: u32, scattered: bool) -> DVec3 {
+    if scattered || bounce >= SURE_IMPULSES { throughput } else { DVec3::splat(AMPLE_THROUGHPUT) }
+}
 
 /// The probability that a path goes on: one minus the extinction coefficient (slide "Extinction Coefficient"), for the channel
 /// that loses least. Fresnel aside, so that it is the same for all directions. Never above 1: nothing makes a path heavier than the light it
@@ -68,7 +82,7 @@ pub fn scatter(surfel: &Surfel, wo: DVec3, directions: Directions, [u, v, lobe]:
 /// heuristic has to know: a path that seldom survives seldom finds the light, and counts for the more when it does. Literal extinction is
 /// left out: its survivors do not stand for those that ended.
 ///
-/// `throughput` is that of the path so far, without `eta^2`.
+/// `throughput` is that of the path so far, as [`roulette_throughput`] has it.
 pub fn path_pdf(surfel: &Surfel, wo: DVec3, wi: DVec3, throughput: DVec3, estimator: &Estimator) -> f64 {
     let pdf = bsdf_pdf(surfel, wo, wi, estimator.directions);
     match estimator.extinction {

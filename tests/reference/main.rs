@@ -13,6 +13,7 @@ mod light;
 mod lost_light;
 mod luminaire_choice;
 mod overlapping_lamps;
+mod roulette;
 mod sampling;
 mod scattering;
 mod sensor;

@@ -37,8 +37,8 @@ fn assert_all_found(all: &[&Series], rounding: f64, resolution: f64) {
     assert_plausible(&tests);
 }
 
-/// From flat to mirror-like no energy is lost or made; both ways of finding light together are nowhere noisy; and where roulette ends most
-/// paths, they are at most as noisy as light sampling alone, because the power heuristic knows that.
+/// From flat to mirror-like no energy is lost or made; both ways of finding light together are nowhere noisy, and with roulette, which
+/// leaves the first surface alone however dark it is, neither.
 #[test]
 fn glossy_plates() {
     let sweep = glossy::sweep(&bench(), &glossy::Steps { exponents: vec![3.0, 1e3, 1e5, 1e8], samples: 1 << 14 })
@@ -52,17 +52,9 @@ fn glossy_plates() {
         let noise = chart(&sweep, &format!("noise-{size}-lamp"));
         let both = series(noise, "both (MIS)");
         assert!(both.points.iter().all(|p| p.y < 0.5), "{size}: {both:?}");
-        let (light, roulette) = (series(noise, "light sampling"), series(noise, "both, with roulette"));
-        for (light, roulette) in light.points.iter().zip(&roulette.points) {
-            // Where less than half of the light was found, the noise is not known.
-            let known = light.y.is_finite() && roulette.y.is_finite();
-            assert!(
-                !known || roulette.y <= 1.2 * light.y,
-                "{size} lamp, exponent {:e}: {} {}",
-                light.x,
-                roulette.y,
-                light.y
-            );
+        for (both, roulette) in both.points.iter().zip(&series(noise, "both, with roulette").points) {
+            let x = both.x;
+            assert!(roulette.y <= 1.1 * both.y, "{size} lamp, exponent {x:e}: {} with, {} without", roulette.y, both.y);
         }
     }
 }

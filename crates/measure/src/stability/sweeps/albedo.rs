@@ -74,7 +74,7 @@ fn terminations() -> [Termination; 5] {
         Termination {
             name: "roulette by throughput",
             estimator: roulette(Extinction::Throughput),
-            // It begins where the throughput has fallen so far.
+            // It begins where the throughput has fallen so far; in dark rooms, a surface later.
             rays: |absorbed| (1.0 - SURE_THROUGHPUT.ln()) / absorbed,
         },
         Termination { name: "roulette by surface", estimator: roulette(Extinction::Surface), rays: until_absorbed },

@@ -2,7 +2,6 @@
 
 use crate::Workbench;
 use crate::chart::{Axis, Point, Series};
-use crate::report::words::share;
 use crate::stability::judge::{everywhere, light};
 use crate::stability::light::{
     Spot, Tally, chart, looking_from, noise_axis, off, over_parallelogram, series, within, without_roulette,
@@ -29,7 +28,7 @@ pub const DEFINITION: Definition = Definition {
 const EYE: Vec3 = Vec3::new(0.8, 0.6, 0.3);
 /// Half the side of the lamps, at the distance 1 in the mirrored direction.
 const LAMPS: [(&str, f64); 3] = [("small", 0.003), ("middling", 0.03), ("large", 0.3)];
-/// Albedo of the plate with the lamp: a varnish, which lets roulette end most paths.
+/// Albedo of the plate with the lamp: a varnish, so dark that roulette by its albedo would end most paths.
 const VARNISH: f32 = 0.05;
 
 /// How light is found under the lamp.
@@ -170,11 +169,7 @@ pub fn sweep(bench: &Workbench, steps: &Steps) -> Result<Sweep> {
     }
     let verdicts = verdicts(&noise, &found, &[&sky_mis[..], &lamp_mis].concat(), &sky_bsdf);
     let range = stretch(steps.exponents.iter().map(|exponent| f64::from(*exponent)), Worse::Upwards, "(exponent)");
-    let summary = everywhere(
-        &verdicts,
-        WITH_ROULETTE,
-        "The defaults find every highlight; those of dark sharp plates stay grainy longest.",
-    );
+    let summary = everywhere(&verdicts, WITH_ROULETTE, "The defaults find every highlight, and are nowhere noisy.");
     let findings = findings(&sky_even, &[&sky_bsdf[..], &sky_mis, &lamp_mis].concat(), &noise, &tally);
     let energy: Vec<Series> = [sky_even, sky_bsdf, sky_mis, lamp_mis].concat();
     const EXPONENT: &str = "glossy exponent";
@@ -217,19 +212,16 @@ fn findings(even: &[Series], kept: &[Series], noise: &[Vec<Series>], tally: &Tal
               that is too dark."
             .into(),
         mends: format!(
-            "Both ways at once, by the power heuristic: a sample varies by at most {:.2} times the squared mean. Roulette by throughput ends \
-             all but {} of the paths of this dark plate (albedo {VARNISH}), and the heuristic, which knows that, trusts light sampling \
-             instead; what light sampling finds badly stays noisy, up to {:.0} times the squared mean, as rare as the survivors are. \
-             Directions are chosen by the half vector, with sines where cosines are nearly 1. On every backend the \
+            "Both ways at once, by the power heuristic: a sample varies by at most {:.2} times the squared mean. Roulette by throughput would \
+             end nearly all paths of this dark plate (albedo {VARNISH}), and be as noisy as the survivors are rare; therefore it begins behind \
+             the first surface whose lobes scatter a path, and with it a sample varies by at most {:.2} times the squared mean. Directions are chosen by the half vector, with sines where cosines are nearly 1. On every backend the \
              light, held against the truth, is {} at every exponent. {}",
             highest(2),
-            share(f64::from(VARNISH) * directional_albedo(1e8)),
             highest(3),
             within(farthest),
             tally.sentence(),
         ),
-        sees: "With the defaults, even noise at every exponent, but for bright reflections in dark sharp plates, where roulette is paid for: \
-               `extinction = \"off\"` with a limit of bounces mends that. With `--light-sampling direct` grainy highlights of large lamps in sharp \
+        sees: "With the defaults, even noise at every exponent, on dark plates too. With `--light-sampling direct` grainy highlights of large lamps in sharp \
                plates, with `none` fireflies of small lamps on rough ones, with cosine directions no highlights at all."
             .into(),
     }
