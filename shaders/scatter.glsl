@@ -2,7 +2,7 @@
 
 // Russian roulette leaves paths of at least this throughput alone, those that no lobe has scattered yet for so many surfaces, and is told
 // of the last number there (src/reference/scatter.rs).
-const float SURE_THROUGHPUT = 0.3;
+const float SURE_THROUGHPUT = 0.25;
 const uint SURE_IMPULSES = 8u;
 const float AMPLE_THROUGHPUT = 1e20;
 

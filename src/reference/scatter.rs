@@ -10,7 +10,7 @@ use crate::scene::{Directions, Estimator, Extinction};
 use glam::DVec3;
 
 /// Russian roulette lets a path live with its throughput over this as the probability: surely as long as it is larger. With 1 paths would end so early that their variance costs more than their rays save; `docs/performance.md` has the measurement.
-pub const SURE_THROUGHPUT: f64 = 0.3;
+pub const SURE_THROUGHPUT: f64 = 0.25;
 
 /// Roulette begins behind the first surface whose lobes scatter the path: how dark that surface is makes the whole pixel dark, and ending most of
 /// its paths there would be noise relative to all that it shows. The mirrors and the glass in front of it do not count either, but for chains

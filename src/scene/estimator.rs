@@ -108,7 +108,7 @@ pub enum Extinction {
     Literal,
     /// By the surface's extinction coefficient, re-weighted.
     Surface,
-    /// By the throughput of the whole path, re-weighted (Russian roulette), once that is below 0.3: behind the first surface that
+    /// By the throughput of the whole path, re-weighted (Russian roulette), once that is below 0.25: behind the first surface that
     /// scatters it, so that a dark surface that is seen directly, in a mirror or through glass is no noisier for it. The factor `eta^2` of
     /// transmission is left out.
     Throughput,
