@@ -1,4 +1,4 @@
-// The path tracer: every invocation adds up a group of samples of every part of one pixel.
+// The path tracer: every invocation adds up some groups of samples of one pixel, one after the other.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #ifdef RAY_QUERY
@@ -39,28 +39,28 @@ layout(set = 0, binding = 8, std430) buffer Dropped {
 const uint MISSED = 0x10000u;
 // The twin is in src/film/batch.rs.
 const float MOST_RADIANCE = 1e36;
+const uint GROUPS_IN_TURN = 4u;     // that an invocation takes
 
 void main() {
     uvec3 id = gl_GlobalInvocationID;
     if (id.x >= batch.tile_width || id.y >= batch.tile_height) return;
     uvec2 pixel = uvec2(batch.tile_x, batch.tile_y) + id.xy;
     uint pixel_index = pixel.y * frame.width + pixel.x;
-    // Each z takes `group` samples of every part, which are PARTS apart.
-    uint stride = batch.group * PARTS;
-    uint first = batch.first_sample + id.z * stride;
+    // Groups begin at multiples of their length, but for the first of all, which may lack its head; the last may lack its tail.
+    uint start = (batch.first_sample / batch.group + id.z * GROUPS_IN_TURN) * batch.group;
+    uint first = max(batch.first_sample, start);
     // From `first` on, so that the last numbers of all do not overflow.
-    uint count = min(stride, batch.end_sample - first);
-    uint last_part = min(PARTS, count) - 1u;
+    uint count = min(batch.group * GROUPS_IN_TURN - (first - start), batch.end_sample - first);
+    uint group_end = min(batch.group - (first - start), count);
     uint pixels = batch.tile_width * batch.tile_height;
-    uint slot = id.z * PARTS * pixels + id.y * batch.tile_width + id.x;
+    uint slot = id.z * GROUPS_IN_TURN * pixels + id.y * batch.tile_width + id.x;
 
     // A driver that ends a long loop (Mesa before 23 does, after 65 535 rounds) leaves these: groups of which all samples are lost.
-    for (uint p = 0u; p <= last_part; p++) {
-        sums[slot + p * pixels] = PixelSum(float[3](0.0, 0.0, 0.0), 0u, 0u, (count - p + PARTS - 1u) / PARTS);
+    for (uint s = slot, from = 0u, to = group_end; from < count; s += pixels, from = to, to = min(to + batch.group, count)) {
+        sums[s] = PixelSum(float[3](0.0, 0.0, 0.0), 0u, 0u, to - from);
     }
 
     // One loop over the bounces of all samples: a lane whose path ends starts its next one while the others go on.
-    uint part = 0u;
     uint offset = 0u;
     uint sample_index = first;
     vec3 sum = vec3(0.0);
@@ -78,11 +78,12 @@ void main() {
                 if (named < dropped.samples.length()) dropped.samples[named] = uvec2(pixel_index, sample_index);
             }
             if (TRANSPARENT && path.bounce == NONE) not_finite += MISSED;
-            offset += PARTS;
-            if (offset >= count) {
-                sums[slot + part * pixels] = PixelSum(float[3](sum.x, sum.y, sum.z), rays.x, rays.y, not_finite);
-                if (part == last_part) break;
-                offset = ++part;
+            offset++;
+            if (offset == group_end) {
+                sums[slot] = PixelSum(float[3](sum.x, sum.y, sum.z), rays.x, rays.y, not_finite);
+                if (offset == count) break;
+                slot += pixels;
+                group_end = min(group_end + batch.group, count);
                 sum = vec3(0.0);
                 rays = uvec2(0u);
                 not_finite = 0u;

@@ -1,7 +1,6 @@
 // Random numbers as a pure function of (pixel, sample, block, seed): the twin of src/sampling, bit for bit.
 
 const uint SENSOR_BLOCK = 0u;
-const uint PARTS = 4u;     // independent parts of a pixel's samples
 
 uint light_block(uint bounce) { return 1u + 2u * bounce; }
 uint scatter_block(uint bounce) { return 2u + 2u * bounce; }
@@ -35,8 +34,8 @@ uvec4 owen_scramble(uvec4 x, uvec4 seed) {
 }
 
 // Two independent, Owen-scrambled (0, 2)-sequences in `index`, xy and zw: src/sampling/sobol.rs says how.
-uvec4 sobol4(uint pixel, uint part, uint index, uint block, uint seed) {
-    uvec4 seeds = random4(pixel, ~part, block, seed);
+uvec4 sobol4(uint pixel, uint index, uint block, uint seed) {
+    uvec4 seeds = random4(pixel, ~0u, block, seed);
     uvec2 x = bitfieldReverse(owen_scramble(uvec2(bitfieldReverse(index)), seeds.zx ^ seeds.wy));
     uvec2 y = x ^ (x >> 1u & 0x55555555u);
     y ^= y >> 2u & 0x33333333u;
@@ -48,8 +47,7 @@ uvec4 sobol4(uint pixel, uint part, uint index, uint block, uint seed) {
 
 // The four numbers of a block, from the scene's sampler.
 uvec4 numbers(uint pixel, uint sample_index, uint block, uint seed) {
-    return SOBOL ? sobol4(pixel, sample_index % PARTS, sample_index / PARTS, block, seed)
-                 : random4(pixel, sample_index, block, seed);
+    return SOBOL ? sobol4(pixel, sample_index, block, seed) : random4(pixel, sample_index, block, seed);
 }
 
 // What makes a ray's decisions about transparent surfaces independent of other rays'. `ray` is 2 b for the ray to bounce b,

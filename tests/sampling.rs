@@ -16,7 +16,7 @@ const PLACES: [[u32; 3]; 6] =
 
 fn points(place: [u32; 3], samples: impl Iterator<Item = u32>) -> Vec<[u32; 4]> {
     let [pixel, block, seed] = place;
-    samples.map(|index| sobol4(pixel, 0, index, block, seed)).collect()
+    samples.map(|index| sobol4(pixel, index, block, seed)).collect()
 }
 
 /// Fails if the smallest of many `p` is too small; each comes with what it is about.
@@ -115,26 +115,23 @@ fn scrambling_is_nested() {
 }
 
 /// Every number of every sample by itself is uniform over pixels, and independent of another number of the same or of another block,
-/// pixel, part, seed or (in another pair) sample: pairs fall evenly into 16 x 16 cells. Both the first digits, and the ones after them.
+/// pixel, seed or (in another pair) sample: pairs fall evenly into 16 x 16 cells. Both the first digits, and the ones after them.
 #[test]
 fn numbers_are_uniform_and_independent() {
     const PIXELS: u32 = 100_000;
     // Steps to another pixel include those that leave the lower bits of the index alone.
-    let mut steps = vec![([0; 5], false)];
+    let mut steps = vec![([0; 4], false)];
     for pixel in [1, 2, 3, 512, 640, 1 << 16, 1 << 17, 1 << 20, 1 << 31] {
-        steps.push(([pixel, 0, 0, 0, 0], true));
+        steps.push(([pixel, 0, 0, 0], true));
     }
     for block in [1, 2, 3, 4, 1 << 17] {
-        steps.push(([0, 0, 0, block, 0], true));
+        steps.push(([0, 0, block, 0], true));
     }
     for seed in [1, 2, 1 << 17, 1 << 31] {
-        steps.push(([0, 0, 0, 0, seed], true));
-    }
-    for part in [1, 2] {
-        steps.push(([0, part, 0, 0, 0], true));
+        steps.push(([0, 0, 0, seed], true));
     }
     // Numbers of the same pair are stratified together, so only the other pair's are independent.
-    steps.extend([1, 2, 3, 4, 255].map(|sample| ([0, 0, sample, 0, 0], false)));
+    steps.extend([1, 2, 3, 4, 255].map(|sample| ([0, sample, 0, 0], false)));
     let ps: Vec<(f64, String)> = steps
         .par_iter()
         .flat_map_iter(|&(step, same_pair)| {
@@ -143,9 +140,9 @@ fn numbers_are_uniform_and_independent() {
                 for digits in [28, 24] {
                     let mut counts = [const { [0u32; 256] }; 16];
                     for pixel in 0..PIXELS {
-                        let here = sobol4(pixel, 1, sample, 2, 5);
-                        let [p, part, i, block, seed] = step;
-                        let there = sobol4(pixel.wrapping_add(p), 1 + part, sample + i, 2 + block, 5 + seed);
+                        let here = sobol4(pixel, sample, 2, 5);
+                        let [p, i, block, seed] = step;
+                        let there = sobol4(pixel.wrapping_add(p), sample + i, 2 + block, 5 + seed);
                         for cell in 0..16 {
                             let (a, b) = (here[cell / 4] >> digits & 15, there[cell % 4] >> digits & 15);
                             counts[cell][(a << 4 | b) as usize] += 1;
@@ -153,7 +150,7 @@ fn numbers_are_uniform_and_independent() {
                     }
                     for (cell, counts) in counts.iter().enumerate() {
                         let (a, b) = (cell / 4, cell % 4);
-                        let tested = if step == [0; 5] { a < b } else { same_pair || a / 2 != b / 2 };
+                        let tested = if step == [0; 4] { a < b } else { same_pair || a / 2 != b / 2 };
                         if tested {
                             let what =
                                 format!("index {sample}, step {step:?}, numbers {a} and {b}, digits from {digits}");
@@ -217,7 +214,7 @@ fn integrates_as_well_as_sobol_burley() {
             let independent = independent.mean * 16.0 / f64::from(n);
             for pair in [0, 2] {
                 let ours = |run, i| {
-                    let numbers = sobol4(run, 0, i, scatter_block(0), 0);
+                    let numbers = sobol4(run, i, scatter_block(0), 0);
                     [uniform(numbers[pair]), uniform(numbers[pair + 1])]
                 };
                 let (mean, ours) = integrate(RUNS, n, integral, f, ours);
@@ -260,8 +257,8 @@ fn pairs_are_independent() {
                     .into_par_iter()
                     .map(|run| {
                         let product = |i| {
-                            let here = sobol4(run * 2, 0, i, scatter_block(0), 0);
-                            let there = sobol4(run * 2 + pixel, 0, i, block, seed);
+                            let here = sobol4(run * 2, i, scatter_block(0), 0);
+                            let there = sobol4(run * 2 + pixel, i, block, seed);
                             centred(here[a]) * centred(there[b])
                         };
                         (0..n).map(product).sum::<f64>().powi(2) / f64::from(n)
@@ -289,7 +286,7 @@ fn errors_are_independent() {
         {
             for (f, integral) in integrands().map(|(_, f, integral, _)| (f, integral)) {
                 let error = |pixel: u32, block, seed, pair: usize| {
-                    let point = |i| sobol4(pixel, 0, i, block, seed);
+                    let point = |i| sobol4(pixel, i, block, seed);
                     (0..n).map(point).map(|p| f(uniform(p[pair]), uniform(p[pair + 1]))).sum::<f64>() / f64::from(n)
                         - integral
                 };

@@ -250,13 +250,13 @@ const OWN: [&str; 2] = [
 /// Constants that the host has too, by their names in the shaders.
 fn twins() -> Vec<(&'static str, f64)> {
     use layout::LuminaireKind;
-    use luminaire::film::MOST_RADIANCE;
+    use luminaire::film::{GROUPS_IN_TURN, MOST_RADIANCE};
     use luminaire::gpu::bvh::{CwBvhNode, STACK_SIZE};
     use luminaire::gpu::pack::luminaire as bounds;
     use luminaire::gpu::probe::Function;
     use luminaire::gpu::specialization::{directions_number, extinction_number, light_sampling_number};
     use luminaire::reference::{luminaire as light, path, scatter};
-    use luminaire::sampling::{PARTS, SENSOR_BLOCK};
+    use luminaire::sampling::SENSOR_BLOCK;
     use luminaire::scene::{Directions, Extinction, Filter, LightSampling};
     use std::f64::consts::{FRAC_PI_4, PI};
 
@@ -284,7 +284,7 @@ fn twins() -> Vec<(&'static str, f64)> {
         ("NODE_TEXELS", texels(size_of::<CwBvhNode>())),
         ("STACK_SIZE", STACK_SIZE as f64),
         ("MOST_RADIANCE", MOST_RADIANCE),
-        ("PARTS", PARTS.into()),
+        ("GROUPS_IN_TURN", GROUPS_IN_TURN.into()),
         ("SENSOR_BLOCK", SENSOR_BLOCK.into()),
         ("LONGEST_PATH", f64::from(path::LONGEST_PATH)),
         ("SURE_THROUGHPUT", scatter::SURE_THROUGHPUT),

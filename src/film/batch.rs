@@ -1,8 +1,18 @@
 //! Work for a tracer, and what comes back from it.
 
-use crate::sampling::PARTS;
-use std::iter::StepBy;
 use std::ops::Range;
+
+/// The longest group of a film: few enough samples to add them up in `f32`.
+pub(crate) const LONGEST_GROUP: u32 = 4;
+
+/// Groups that one invocation of the kernel takes, one after the other: it should be busy for a while, and stay short (Mesa before 23 ends a shader's loops
+/// after 65 535 rounds).
+pub const GROUPS_IN_TURN: u32 = 4;
+
+/// Samples in the group of a film that holds this sample, by its number alone: 1 below 8, 2 below 16, then 4.
+pub(crate) fn group_length(sample: u32) -> u32 {
+    1 << (sample / GROUPS_IN_TURN).clamp(1, LONGEST_GROUP).ilog2()
+}
 
 /// A rectangle of pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,8 +36,7 @@ impl Tile {
 
 /// Work for a tracer: the samples `samples` of every pixel of `tile`, added up in groups of `group`.
 ///
-/// A group holds samples of one of the [`PARTS`] into which the samples fall, which are `PARTS` apart: group `g` those from
-/// `samples.start + g / PARTS * PARTS * group + g % PARTS`, at most `group` of them and none past `samples.end`.
+/// Groups begin at the multiples of `group`; the first may lack its head, where the samples begin within it, and the last its tail.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Batch {
     /// Which pixels.
@@ -41,17 +50,14 @@ pub struct Batch {
 impl Batch {
     /// Number of groups: those that hold at least one sample.
     pub fn groups(&self) -> u32 {
-        let stride = u64::from(self.group) * u64::from(PARTS);
-        let samples = u64::from(self.samples.end - self.samples.start);
-        (samples / stride * u64::from(PARTS) + (samples % stride).min(u64::from(PARTS))) as u32
+        let Range { start, end } = self.samples;
+        if start < end { (end - 1) / self.group - start / self.group + 1 } else { 0 }
     }
 
     /// The samples of a group.
-    pub fn group_samples(&self, group: u32) -> StepBy<Range<u32>> {
-        let stride = self.group.saturating_mul(PARTS);
-        let start = self.samples.start + group / PARTS * stride;
-        let end = start.saturating_add(stride).min(self.samples.end);
-        (start + group % PARTS..end).step_by(PARTS as usize)
+    pub fn group_samples(&self, group: u32) -> Range<u32> {
+        let start = (self.samples.start / self.group + group) * self.group;
+        start.max(self.samples.start)..start.saturating_add(self.group).min(self.samples.end)
     }
 }
 

@@ -26,6 +26,11 @@ impl Brightness {
         Brightness((sum / n.max(1) as f64).powi(2))
     }
 
+    /// Of a picture whose half-power mean is known.
+    pub(super) fn from_half_power_mean(half_power_mean: f64) -> Self {
+        Brightness(half_power_mean)
+    }
+
     /// The half-power mean, in the unit of the radiances.
     pub fn half_power_mean(self) -> f64 {
         self.0
@@ -66,7 +71,7 @@ impl Film {
 
     /// The means of the pixels that have finite samples.
     fn measured_pixels(&self) -> impl Iterator<Item = [f64; 3]> {
-        let has_samples = |pixel: &usize| self.part_samples(*pixel).iter().any(|samples| *samples > 0);
+        let has_samples = |pixel: &usize| self.finite_samples(*pixel) > 0;
         (0..self.pixels()).filter(has_samples).map(|pixel| self.mean(pixel))
     }
 }

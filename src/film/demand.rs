@@ -1,11 +1,11 @@
 //! What a film and its files take of this machine's memory.
 
+use super::BLOCKS;
 use crate::memory::{available, gib, threads_demand};
-use crate::sampling::PARTS;
 use crate::{Error, Result};
 
 /// Bytes a pixel of the sums and the numbers of samples.
-const FILM: u64 = 24 * PARTS as u64 + 4;
+const FILM: u64 = 24 * BLOCKS as u64 + 4;
 /// The means of all samples, which every file needs.
 const MEANS: u64 = 12;
 /// Eight bits a channel, and what they deflate to.
@@ -120,7 +120,7 @@ mod tests {
         let absurd = Demand { width: 65536, height: 65535, sums: true, ..Demand::default() };
         let error = absurd.fits(Some(8 << 30)).unwrap_err().to_string();
         assert!(
-            error.contains("65536 x 65535") && error.contains("1012.0 GiB") && error.contains("8192.0 MiB"),
+            error.contains("65536 x 65535") && error.contains("1780.0 GiB") && error.contains("8192.0 MiB"),
             "{error}"
         );
         let plain = Demand { width: 1920, height: 1080, ..Demand::default() };
@@ -135,12 +135,12 @@ mod tests {
         let plain = Demand { width: 100, height: 10, ..Demand::default() };
         let of = |demand: Demand| (demand.bytes() - FIXED) / 1000;
         let sums = Demand { sums: true, ..plain };
-        assert_eq!(of(Demand { alpha: true, ..plain }), 118 + ALPHA);
+        assert_eq!(of(Demand { alpha: true, ..plain }), 214 + ALPHA);
         assert_eq!(
             [of(plain), of(Demand { errors: true, ..plain }), of(Demand { exr: true, ..plain })],
-            [118, 123, 153]
+            [214, 219, 249]
         );
-        assert_eq!([of(Demand { aovs: true, ..plain }), of(sums), of(Demand { aovs: true, ..sums })], [217, 253, 285]);
-        assert_eq!(sums.file_bytes(), 124_000);
+        assert_eq!([of(Demand { aovs: true, ..plain }), of(sums), of(Demand { aovs: true, ..sums })], [313, 445, 477]);
+        assert_eq!(sums.file_bytes(), 220_000);
     }
 }

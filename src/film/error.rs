@@ -1,26 +1,34 @@
-//! The error bar: how far a picture is from the truth, estimated from the spread of the independent parts of its samples.
+//! The error bar: how far a picture is from the truth, estimated from the spread of the blocks of its samples.
 //!
-//! The variance of a pixel's mean follows from the means of its [`PARTS`](crate::sampling::PARTS) parts. Four numbers estimate a variance
-//! badly, and where the light comes in rare bright samples they estimate too little (all of them may have missed it), so a pixel's error
-//! is that of its 3 x 3 neighbourhood. Pixels that stand out of theirs by what few parts hold, *fireflies*, are counted apart: by itself one looks like a
+//! The variance of a pixel's mean follows from the means of its [`Blocks`](super::Blocks), and from how fast errors fall in this picture ([`Convergence`]). Eight
+//! numbers estimate a variance badly, and where the light comes in rare bright samples they estimate too little (all of them may have missed it), so a pixel's error
+//! is that of its 3 x 3 neighbourhood. Pixels that stand out of theirs by what few blocks hold, *fireflies*, are counted apart: by itself one looks like a
 //! small bright object.
 
 use super::Film;
+use super::blocks::BLOCKS;
 use super::brightness::Brightness;
+use super::convergence::{Contrasts, Convergence, LEVELS, Observed, Spread};
 use super::error_estimate::ErrorEstimate;
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// The truth of 95 % of all values is within so many standard errors: Student's t for 27 degrees of freedom, 3 of each of 9 pixels.
-pub const INTERVAL_95: f64 = 2.052;
+/// The truth of 95 % of all values is within so many standard errors: Student's t for 60 degrees of freedom, about 7 of each of 9 pixels.
+pub const INTERVAL_95: f64 = 2.0;
 
-/// A pixel is a firefly if at most two of its four parts hold its radiance (the variance of the mean is the mean's square if one of them does,
-/// a third of it if two do, a ninth if three do) ...
-const FIREFLY_VARIANCE: f64 = 1.0 / 6.0;
+/// A pixel is a firefly if few of its blocks hold its radiance: at most three of seven or eight, two of four to six (the variance of the mean, if they were
+/// independent, is the mean's square if one of them does; with three of eight and of seven 0.24 and 0.22 of that, with four of eight 0.14, with three of six 0.2) ...
+const FIREFLY_VARIANCE: f64 = 0.2;
 /// ... and that is so many times its neighbours',
 const FIREFLY_CONTRAST: f64 = 5.0;
 /// or this part of the picture's half-power mean where they are darker.
 const FIREFLY_FLOOR: f64 = 1e-3;
+
+/// A pixel's neighbours count by this power of the variance around them, where they say what radiance it should have. By -1 they would have the least variance if they
+/// had one radiance; but where it varies, or their variances are badly known, that is mostly too dark, since the dark ones have the least variance. Of -0.6 to -1 this
+/// one gave the best estimates in the ten scenes of `docs/accuracy.md`.
+const NEIGHBOURS_POWER: f64 = -0.75;
 
 /// A standard error of this part of the picture's half-power mean is none; it keeps weights finite where nothing varies.
 const TINY: f64 = 1e-15;
@@ -39,30 +47,35 @@ pub struct ErrorMap {
     /// The same relative to the radiance, and to the picture's brightness where it is dark, as [`REL_MSE`](super::REL_MSE) has it: the root mean
     /// square of the channels. NaN where no error can be told: in pixels with too few samples, and everywhere if `total` is none.
     pub relative: Vec<f32>,
-    /// Whether the pixel is a firefly, whose error is estimated from its own parts alone, or has too few finite samples for an estimate.
+    /// Whether the pixel is a firefly, whose error is estimated from its own blocks alone, or has too few finite samples for an estimate.
     pub firefly: Vec<bool>,
     /// The picture as a whole; none if it is black but for its fireflies: what has found no light tells nothing of the light.
     pub total: Option<ErrorEstimate>,
+    /// How fast the error falls, which the estimates rest on.
+    pub convergence: Convergence,
 }
 
 impl Film {
-    /// Variance of the mean of a pixel, by channel, from its own samples alone; none if fewer than two parts have any.
-    pub fn variance(&self, pixel: usize) -> Option<[f64; 3]> {
-        self.measured(pixel).map(|[r, g, b, _]| [r, g, b].map(|channel| channel.variance))
+    /// Variance of the mean of a pixel, by channel, from its own samples alone, in a picture that converges as [`ErrorMap::convergence`] says; none if fewer than
+    /// two blocks have any.
+    pub fn variance(&self, pixel: usize, convergence: Convergence) -> Option<[f64; 3]> {
+        let blocks = self.blocks(pixel);
+        let contrasts = Contrasts::new(blocks.range(), convergence);
+        self.measured(pixel, &contrasts).map(|[r, g, b, _]| [r, g, b].map(|channel| channel.variance))
     }
 
-    /// The estimated error of the picture; none if no pixel has samples in two parts, or the picture is black but for its fireflies.
+    /// The estimated error of the picture; none if no pixel has samples in two blocks, or the picture is black but for its fireflies.
     pub fn error(&self) -> Option<ErrorEstimate> {
-        self.estimate(|_, _| {})?
+        self.estimate(|_, _| {})?.0
     }
 
-    /// The estimated error of every pixel; none if no pixel has samples in two parts.
+    /// The estimated error of every pixel; none if no pixel has samples in two blocks.
     pub fn error_map(&self) -> Option<ErrorMap> {
         let (mut standard_error, mut relative, mut firefly) = (Vec::new(), Vec::new(), Vec::new());
         standard_error.reserve_exact(self.pixels());
         relative.reserve_exact(self.pixels());
         firefly.reserve_exact(self.pixels());
-        let total = self.estimate(|pixel, brightness| {
+        let (total, convergence) = self.estimate(|pixel, brightness| {
             standard_error.push(pixel.variance.map(|variance| variance.sqrt() as f32));
             relative.push(match pixel.known && !brightness.is_black() {
                 true => (relative_squares(brightness, pixel.variance, pixel.radiance) / 3.0).sqrt() as f32,
@@ -70,34 +83,40 @@ impl Film {
             });
             firefly.push(pixel.firefly);
         })?;
-        Some(ErrorMap { standard_error, relative, firefly, total })
+        Some(ErrorMap { standard_error, relative, firefly, total, convergence })
     }
 
     /// Estimates the error of the picture, and gives that of every pixel to `take`, in their order, with the brightness that it is relative to. None
-    /// if no pixel has samples in two parts; within, none if the picture is black but for its fireflies.
+    /// if no pixel has samples in two blocks; within, none if the picture is black but for its fireflies.
     ///
-    /// A band of rows at a time: what is worked out on the way takes ten times the memory of the result. Twice over: how bright the picture
-    /// is without its fireflies has to be known first.
-    fn estimate(&self, mut take: impl FnMut(&PixelError, Brightness)) -> Option<Option<ErrorEstimate>> {
+    /// A band of rows at a time: what is worked out on the way takes ten times the memory of the result. Twice over: how bright the picture is without its
+    /// fireflies, and how fast its error falls, have to be known first.
+    fn estimate(&self, mut take: impl FnMut(&PixelError, Brightness)) -> Option<(Option<ErrorEstimate>, Convergence)> {
         // What is small is so for this picture, whatever the unit of its light.
         let with_fireflies = Brightness::of((0..self.pixels()).flat_map(|pixel| self.mean(pixel))).half_power_mean();
-        let height = self.height as usize;
-        let rows = (BAND_PIXELS / (self.width as usize).max(1)).max(LEAST_ROWS);
-        let bands = || (0..height).step_by(rows).map(|top| self.band(top, (top + rows).min(height), with_fireflies));
-
-        let mut unknown = 0u64;
-        let plausible = |pixel: PixelError| {
+        let (mut unknown, mut relative, mut absolute) = (0u64, Observed::default(), Observed::default());
+        let contrasts = self.contrasts(Convergence::INDEPENDENT);
+        let plausible = |(samples, pixel): (&u32, PixelError)| {
             unknown += u64::from(!pixel.known);
-            (!pixel.firefly).then_some(pixel.radiance)
+            if pixel.firefly {
+                return None;
+            }
+            if let Some([absolute_squares, relative_squares]) = pixel.squares {
+                absolute.add(absolute_squares, &contrasts[samples]);
+                relative.add(relative_squares, &contrasts[samples]);
+            }
+            Some(pixel.radiance)
         };
-        let brightness = Brightness::of(bands().flatten().filter_map(plausible).flatten());
+        let pixels = self.samples.iter().zip(self.bands(with_fireflies, &contrasts));
+        let brightness = Brightness::of(pixels.filter_map(plausible).flatten());
+        let convergence = relative.convergence();
         let all = self.pixels() as u64;
         if unknown == all {
             return None;
         }
 
         let (mut square, mut relative_square, mut left_out, mut counted) = (0.0, 0.0, 0.0, 0u64);
-        for pixel in bands().flatten() {
+        for pixel in self.bands(with_fireflies, &self.contrasts(convergence)) {
             take(&pixel, brightness);
             if pixel.firefly {
                 left_out += relative_squares(brightness, pixel.own_variance, pixel.expected);
@@ -107,36 +126,65 @@ impl Film {
                 relative_square += relative_squares(brightness, pixel.own_variance, pixel.radiance);
             }
         }
-        Some((!brightness.is_black()).then(|| ErrorEstimate {
-            rmse: (square / (3 * counted) as f64).sqrt(),
+        let total = (!brightness.is_black()).then(|| ErrorEstimate {
+            // What is bright converges in its own way.
+            rmse: (absolute.variance().unwrap_or(square / counted as f64) / 3.0).sqrt(),
             rel_mse: relative_square / (3 * counted) as f64,
             fireflies: all - counted - unknown,
             unknown,
             rel_mse_with_fireflies: (relative_square + left_out) / (3 * (all - unknown)) as f64,
-        }))
+        });
+        Some((total, convergence))
+    }
+
+    /// The contrasts of the blocks of pixels with so many samples, for every number of samples that a pixel has.
+    fn contrasts(&self, convergence: Convergence) -> BTreeMap<u32, Contrasts> {
+        let mut contrasts = BTreeMap::new();
+        for samples in self.samples.chunk_by(|a, b| a == b).map(|samples| samples[0]) {
+            let new = || Contrasts::new(self.first_sample..self.first_sample + samples, convergence);
+            contrasts.entry(samples).or_insert_with(new);
+        }
+        contrasts
+    }
+
+    /// The errors of all pixels of a picture of this half-power mean.
+    fn bands(&self, half_power_mean: f64, contrasts: &BTreeMap<u32, Contrasts>) -> impl Iterator<Item = PixelError> {
+        let height = self.height as usize;
+        let rows = (BAND_PIXELS / (self.width as usize).max(1)).max(LEAST_ROWS);
+        (0..height)
+            .step_by(rows)
+            .flat_map(move |top| self.band(top, (top + rows).min(height), half_power_mean, contrasts))
     }
 
     /// The errors of the rows from `top` to before `bottom` of a picture of this half-power mean.
-    fn band(&self, top: usize, bottom: usize, half_power_mean: f64) -> Vec<PixelError> {
+    fn band(
+        &self,
+        top: usize,
+        bottom: usize,
+        half_power_mean: f64,
+        contrasts: &BTreeMap<u32, Contrasts>,
+    ) -> Vec<PixelError> {
         // What is known of a pixel follows from its neighbours, and what is known of those from theirs.
         let rows = |more: usize| {
             let rows = top.saturating_sub(more)..(bottom + more).min(self.height as usize);
             rows.start * self.width as usize..rows.end * self.width as usize
         };
+        let brightness = Brightness::from_half_power_mean(half_power_mean);
         let tiny = (TINY * half_power_mean).powi(2).max(f64::MIN_POSITIVE);
         // The fourth "channel" is the mean of the others, by which fireflies are recognised.
-        let own = Rows::new(rows(3), |pixel| match self.measured(pixel) {
+        let own = Rows::new(rows(3), |pixel| match self.measured(pixel, &contrasts[&self.samples[pixel]]) {
             Some(channels) => Own { channels, known: true },
-            // A pixel without samples in two parts (because they were not finite, or the render has just begun) has no estimate, and is left out
+            // A pixel without samples in two blocks (because they were not finite, or the render has just begun) has no estimate, and is left out
             // like a firefly.
             None => {
                 let [r, g, b] = self.mean(pixel);
-                let channels = [r, g, b, (r + g + b) / 3.0].map(|mean| Measured { mean, variance: 0.0 });
+                let channels =
+                    [r, g, b, (r + g + b) / 3.0].map(|mean| Spread { mean, naive: 0.0, variance: 0.0, squares: None });
                 Own { channels, known: false }
             }
         });
         let pooled = Rows::new(rows(2), |pixel| mean_variance(self.around(pixel).map(|j| &own.at(j).channels)));
-        // What the others say about a pixel: their mean, in which noisy ones count for less.
+        // By which fireflies are told: the mean of the others, in which noisy ones count for less.
         let expected = Rows::new(rows(1), |pixel| {
             [0, 1, 2, 3].map(|c| {
                 let (mut sum, mut weights) = (0.0, 0.0);
@@ -152,22 +200,41 @@ impl Film {
         let firefly = Rows::new(rows(1), |pixel| {
             let (Own { channels: [.., grey], known }, [.., expected]) = (own.at(pixel), expected.at(pixel));
             !known
-                || grey.variance > FIREFLY_VARIANCE * grey.mean * grey.mean
+                || grey.naive > FIREFLY_VARIANCE * grey.mean * grey.mean
                     && grey.mean > FIREFLY_CONTRAST * (expected + FIREFLY_FLOOR * half_power_mean)
         });
         let pixels = Rows::new(rows(0), |pixel| {
-            let (Own { channels, known }, expected) = (own.at(pixel), expected.at(pixel));
+            let Own { channels, known } = own.at(pixel);
+            // What the others say about a pixel, without fireflies; where all of them are, as above.
+            let expected: [f64; 4] = std::array::from_fn(|c| {
+                let (mut sum, mut weights) = (0.0, 0.0);
+                for j in self.around(pixel).filter(|j| *j != pixel && !firefly.at(*j)) {
+                    let weight = ((pooled.at(j)[c] + tiny) / (pooled.at(pixel)[c] + tiny)).powf(NEIGHBOURS_POWER);
+                    sum += weight * own.at(j).channels[c].mean;
+                    weights += weight;
+                }
+                if weights > 0.0 { sum / weights } else { expected.at(pixel)[c] }
+            });
             let alone = *firefly.at(pixel);
             let variance = if alone {
                 channels.map(|m| m.variance)
             } else {
                 mean_variance(self.around(pixel).filter(|j| !firefly.at(*j)).map(|j| &own.at(j).channels))
             };
+            let radiance = std::array::from_fn(|c| plausible(&channels[c], expected[c]));
+            // In sum over the channels; absolute, and relative to the radiance.
+            let [red, green, blue] = [0, 1, 2].map(|c| channels[c].squares);
+            let squares = red.zip(green).zip(blue).map(|((red, green), blue)| {
+                let level = |level: usize| [red[level], green[level], blue[level]];
+                let absolute = std::array::from_fn(|i| level(i).into_iter().sum());
+                [absolute, std::array::from_fn(|i| relative_squares(brightness, level(i), radiance))]
+            });
             PixelError {
                 variance: colours(variance),
                 own_variance: colours(channels.map(|m| m.variance)),
-                radiance: std::array::from_fn(|c| channels[c].plausible(expected[c])),
-                expected: colours(*expected),
+                radiance,
+                squares,
+                expected: colours(expected),
                 firefly: alone,
                 known: *known,
             }
@@ -176,22 +243,12 @@ impl Film {
     }
 
     /// Mean and variance of a pixel: red, green, blue, and their mean.
-    fn measured(&self, pixel: usize) -> Option<[Measured; 4]> {
-        let samples = self.part_samples(pixel).map(f64::from);
-        let parts = samples.iter().filter(|n| **n > 0.0).count();
-        if parts < 2 {
-            return None;
-        }
-        let all: f64 = samples.iter().sum();
-        // Weighted by the numbers of samples: without bias if the variance of a part's mean goes as one over its samples.
-        let scale = 1.0 / ((parts as f64 - 1.0) * all);
-        let sums = self.sums[pixel].map(|[r, g, b]| [r, g, b, (r + g + b) / 3.0]);
-        Some([0, 1, 2, 3].map(|c| {
-            let mean = sums.iter().map(|sum| sum[c]).sum::<f64>() / all;
-            let filled = samples.iter().zip(&sums).filter(|(n, _)| **n > 0.0);
-            let spread: f64 = filled.map(|(n, sum)| (sum[c] - n * mean).powi(2) / n).sum();
-            Measured { mean, variance: scale * spread }
-        }))
+    fn measured(&self, pixel: usize, contrasts: &Contrasts) -> Option<[Spread; 4]> {
+        let samples = self.block_samples(pixel).map(f64::from);
+        let [red, green, blue] = [0, 1, 2].map(|c| self.sums[pixel].map(|sum| sum[c]));
+        let grey = std::array::from_fn(|block: usize| (red[block] + green[block] + blue[block]) / 3.0);
+        let [r, g, b, grey] = [red, green, blue, grey].map(|sums: [f64; BLOCKS]| contrasts.spread(samples, sums));
+        Some([r?, g?, b?, grey?])
     }
 
     /// The pixels of the 3 x 3 neighbourhood, itself among them; fewer at the edges.
@@ -206,7 +263,7 @@ impl Film {
 /// A pixel's mean and variance, from its own samples.
 struct Own {
     /// Red, green, blue, and their mean.
-    channels: [Measured; 4],
+    channels: [Spread; 4],
     /// Whether the variance could be measured.
     known: bool,
 }
@@ -218,10 +275,12 @@ struct PixelError {
     variance: [f64; 3],
     /// From its own samples alone.
     own_variance: [f64; 3],
-    /// As far as it is known ([`Measured::plausible`]).
+    /// As far as it is known ([`plausible`]).
     radiance: [f64; 3],
     /// The radiance that its neighbours lead to expect.
     expected: [f64; 3],
+    /// [`Spread::squares`] in sum over the channels, and the same relative to the radiance.
+    squares: Option<[[f64; LEVELS]; 2]>,
     firefly: bool,
     /// Whether its variance could be measured.
     known: bool,
@@ -246,22 +305,13 @@ impl<T: Send> Rows<T> {
     }
 }
 
-/// Mean of a pixel in one channel, and the variance of that mean.
-#[derive(Debug, Clone, Copy)]
-struct Measured {
-    mean: f64,
-    variance: f64,
-}
-
-impl Measured {
-    /// The radiance as far as it is known: the pixel's own where it is sure of it, towards its neighbours' where it is not (James and
-    /// Stein's shrinking). An error measured against the pixel's own radiance would be too small wherever that is too large by chance.
-    fn plausible(self, expected: f64) -> f64 {
-        let off = self.mean - expected;
-        let sure = if off == 0.0 { 0.0 } else { (1.0 - self.variance / (off * off)).max(0.0) };
-        // What is no firefly is not taken to be more than three times too bright.
-        (expected + sure * off).max(self.mean / 3.0)
-    }
+/// The radiance as far as it is known: the pixel's own where it is sure of it, towards its neighbours' where it is not (James and
+/// Stein's shrinking). An error measured against the pixel's own radiance would be too small wherever that is too large by chance.
+fn plausible(own: &Spread, expected: f64) -> f64 {
+    let off = own.mean - expected;
+    let sure = if off == 0.0 { 0.0 } else { (1.0 - own.variance / (off * off)).max(0.0) };
+    // What is no firefly is not taken to be more than three times too bright.
+    (expected + sure * off).max(own.mean / 3.0)
 }
 
 /// The three that are colours of four.
@@ -279,7 +329,7 @@ fn relative_squares(brightness: Brightness, variance: [f64; 3], radiance: [f64; 
 }
 
 /// Mean of the variances of some pixels, by channel.
-fn mean_variance<'a>(pixels: impl Iterator<Item = &'a [Measured; 4]>) -> [f64; 4] {
+fn mean_variance<'a>(pixels: impl Iterator<Item = &'a [Spread; 4]>) -> [f64; 4] {
     let (mut sum, mut n) = ([0.0; 4], 0.0);
     for pixel in pixels {
         (0..4).for_each(|c| sum[c] += pixel[c].variance);
@@ -314,29 +364,30 @@ mod tests {
 
     #[test]
     fn the_error_of_even_noise_is_that_of_its_distribution() {
-        // 18 samples: parts of unequal size.
-        let (samples, spread) = (18, 0.5);
+        // 54 samples: six blocks of eight and one of six.
+        let (samples, spread) = (54, 0.5);
         let error = film(samples, spread, |_, _| 3.0).error_map().unwrap();
         let total = error.total.unwrap();
         let expected = 3.0 * spread / 3f64.sqrt() / f64::from(samples).sqrt();
         // The half-power mean of an even picture is its radiance.
         let over = (9.0f64 + 1.0).sqrt();
-        // 4096 pixels of three degrees of freedom: 1.3 % of the variance, and three times that is allowed.
-        assert!((total.rmse / expected - 1.0).abs() < 0.02, "{total:?} {expected}");
-        assert!((total.relative() / (expected / over) - 1.0).abs() < 0.02);
+        // From 4096 pixels of six contrasts the variance would be right to 0.9 %; how it falls has to be found out as well, by which it varies by 2 %.
+        assert!((total.rmse / expected - 1.0).abs() < 0.03, "{total:?} {expected}");
+        assert!((total.relative() / (expected / over) - 1.0).abs() < 0.03, "{total:?} {expected}");
         assert_eq!((total.fireflies, total.unknown), (0, 0));
         let mean: f64 = error.standard_error.iter().map(|e| f64::from(e[1]).powi(2)).sum::<f64>() / 4096.0;
-        assert!((mean.sqrt() / expected - 1.0).abs() < 0.02);
+        assert!((mean.sqrt() / expected - 1.0).abs() < 0.03);
         let relative = error.relative.iter().map(|e| f64::from(e * e)).sum::<f64>() / 4096.0;
-        assert!((relative.sqrt() * over / expected - 1.0).abs() < 0.02);
+        assert!((relative.sqrt() * over / expected - 1.0).abs() < 0.03);
     }
 
     #[test]
     fn bands_do_not_show() {
         let wide = film(16, 0.5, |x, y| if (x * y) % 97 == 3 { 50.0 } else { 1.0 + f64::from(x % 3) });
-        let whole = wide.band(0, SIZE as usize, 1.0);
+        let contrasts = wide.contrasts(Convergence::INDEPENDENT);
+        let whole = wide.band(0, SIZE as usize, 1.0, &contrasts);
         for (top, bottom) in [(0, 1), (0, 16), (16, 32), (1, 2), (31, 64), (63, 64)] {
-            let band = wide.band(top, bottom, 1.0);
+            let band = wide.band(top, bottom, 1.0, &contrasts);
             let expected = &whole[top * SIZE as usize..bottom * SIZE as usize];
             assert_eq!(band.len(), expected.len());
             for (found, expected) in band.iter().zip(expected) {
@@ -361,7 +412,7 @@ mod tests {
     fn a_firefly_is_told_apart_and_a_lamp_is_not() {
         let mut film = film(16, 0.5, |x, y| if (x, y) == (40, 40) { 500.0 } else { 1.0 });
         let before = film.error().unwrap();
-        assert_eq!(before.fireflies, 0, "a lamp of one pixel, in all parts");
+        assert_eq!(before.fireflies, 0, "a lamp of one pixel, in all blocks");
         let at = 20 * SIZE as usize + 20;
         film.sums[at][2][0] += 5000.0;
         let after = film.error_map().unwrap();
@@ -369,7 +420,8 @@ mod tests {
         assert_eq!((total.fireflies, total.is_mostly_fireflies()), (1, true));
         assert!(after.firefly[at] && after.standard_error[at][0] > 100.0 && after.relative[at] > 1.0);
         assert_eq!(after.standard_error[at + 1][0], {
-            let others = film.around(at + 1).filter(|j| *j != at).map(|j| film.measured(j).unwrap()[0].variance);
+            let variance = |j| film.variance(j, after.convergence).unwrap()[0];
+            let others = film.around(at + 1).filter(|j| *j != at).map(variance);
             (others.sum::<f64>() / 8.0).sqrt() as f32
         });
         assert!((total.relative() / before.relative() - 1.0).abs() < 0.01);
@@ -402,11 +454,11 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_told_from_one_part_and_no_error_from_noiseless_samples() {
+    fn nothing_is_told_from_one_sample_and_no_error_from_noiseless_samples() {
         assert_eq!(film(1, 0.5, |_, _| 1.0).error(), None);
         // One pixel that has lost all its samples does not take the others' error away.
         let mut lost = film(8, 0.5, |_, _| 1.0);
-        (0..4).for_each(|part| assert_eq!(lost.dropped.insert((77, part), 2), None));
+        (0..BLOCKS).for_each(|block| assert_eq!(lost.dropped.insert((77, block), 1), None));
         let errors = lost.error_map().unwrap();
         let total = errors.total.unwrap();
         assert!(errors.firefly[77] && errors.relative[77].is_nan() && total.rmse > 0.0);
@@ -429,8 +481,8 @@ mod tests {
         black.sums[500][2] = [1e-5; 3];
         let errors = black.error_map().unwrap();
         assert!(errors.total.is_none() && errors.firefly[500]);
-        // A lamp in the black, in all parts: what is seen is known.
-        black.sums[500] = [[1e-5; 3]; 4];
+        // A lamp in the black, in all blocks: what is seen is known.
+        black.sums[500] = [[1e-5; 3]; BLOCKS];
         assert_eq!(black.error().map(|error| (error.rel_mse, error.fireflies)), Some((0.0, 0)));
     }
 }

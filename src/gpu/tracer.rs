@@ -8,9 +8,8 @@ use super::vulkan::device::Device;
 use super::vulkan::kernel::Kernel;
 use super::vulkan::shader::Shader;
 use crate::Result;
-use crate::film::{AovSum, Batch, PixelSum, Rays, SampleId, Tile};
+use crate::film::{AovSum, Batch, GROUPS_IN_TURN, PixelSum, Rays, SampleId, Tile};
 use crate::render::{SceneTracer, Traced, Tracer};
-use crate::sampling::PARTS;
 use crate::scene::{FilmSettings, Integrator, Scene, Sensor};
 use std::ops::Range;
 use std::sync::Arc;
@@ -85,8 +84,11 @@ impl Tracer for GpuTracer {
         }
         let push = push(tile, batch.samples.clone(), batch.group);
         let size = (count * size_of::<layout::PixelSum>()) as u64;
-        let workgroups =
-            [tile.width.div_ceil(TILE_WORKGROUP), tile.height.div_ceil(TILE_WORKGROUP), groups.div_ceil(PARTS)];
+        let workgroups = [
+            tile.width.div_ceil(TILE_WORKGROUP),
+            tile.height.div_ceil(TILE_WORKGROUP),
+            groups.div_ceil(GROUPS_IN_TURN),
+        ];
         let bound = &self.bound;
         let device_seconds = bound.run("path trace", |recorder| {
             recorder.clear(&bound.extra);

@@ -2,10 +2,9 @@
 
 use super::digest::{self, BLANK, DIGEST};
 use super::provenance::Provenance;
-use crate::film::{Film, SampleId};
+use crate::film::{BLOCKS, Film, SampleId};
 use crate::picture::{self, Attribute, Crop, Values};
 use crate::render::{DROPPED_NAMED, LEAST_FOR_NOISE, Rendered, is_a_pass};
-use crate::sampling::PARTS;
 use crate::scene::Scene;
 use crate::{Error, Result};
 use serde::{Deserialize, Serialize};
@@ -16,7 +15,7 @@ const PROVENANCE: &str = "luminaire.provenance";
 const COUNTS: &str = "luminaire.counts";
 
 /// The picture, its error, its alpha, the numbers of samples and of those that met nothing, the sums in halves, what is left out.
-const MOST_CHANNELS: usize = 3 + 3 + 1 + 2 + 6 * PARTS as usize + PARTS as usize;
+const MOST_CHANNELS: usize = 3 + 3 + 1 + 2 + 6 * BLOCKS + BLOCKS;
 
 /// The channel of the samples that met nothing.
 const MISSED: &str = "missed";
@@ -65,16 +64,16 @@ pub fn save(path: &Path, rendered: &Rendered, provenance: &Provenance) -> Result
     if let Some(missed) = &film.missed {
         channels.push((MISSED.to_owned(), Values::Integer(missed.clone())));
     }
-    for part in 0..PARTS as usize {
+    for block in 0..BLOCKS {
         for (c, channel) in CHANNELS.into_iter().enumerate() {
             for (half, shift) in HALVES.into_iter().zip([32, 0]) {
-                let bits = film.sums.iter().map(|sums| (sums[part][c].to_bits() >> shift) as u32).collect();
-                channels.push((format!("sum.{part}.{channel}.{half}"), Values::Integer(bits)));
+                let bits = film.sums.iter().map(|sums| (sums[block][c].to_bits() >> shift) as u32).collect();
+                channels.push((format!("sum.{block}.{channel}.{half}"), Values::Integer(bits)));
             }
         }
         if !film.dropped.is_empty() {
-            let dropped = |pixel| film.dropped.get(&(pixel, part)).copied().unwrap_or(0);
-            channels.push((format!("dropped.{part}"), Values::Integer((0..film.pixels()).map(dropped).collect())));
+            let dropped = |pixel| film.dropped.get(&(pixel, block)).copied().unwrap_or(0);
+            channels.push((format!("dropped.{block}"), Values::Integer((0..film.pixels()).map(dropped).collect())));
         }
     }
     let json = |value: serde_json::Result<String>| value.map_err(|e| Error::write(path, e));
@@ -155,28 +154,28 @@ fn sums(path: &Path, provenance: &Provenance, counts: Counts) -> Result<Rendered
     if !in_order || end.is_none_or(|end| !is_a_pass(counts.first_sample + least..end)) {
         return Err(damaged("its numbers of samples are impossible"));
     }
-    for part in 0..PARTS as usize {
+    for block in 0..BLOCKS {
         for (c, channel) in CHANNELS.into_iter().enumerate() {
             for (half, shift) in HALVES.into_iter().zip([32, 0]) {
-                let name = format!("sum.{part}.{channel}.{half}");
+                let name = format!("sum.{block}.{channel}.{half}");
                 let bits = take(&name).ok_or_else(|| damaged(&format!("there is no channel `{name}`")))?;
                 for (sums, bits) in film.sums.iter_mut().zip(bits) {
-                    sums[part][c] = f64::from_bits(sums[part][c].to_bits() | u64::from(bits) << shift);
+                    sums[block][c] = f64::from_bits(sums[block][c].to_bits() | u64::from(bits) << shift);
                 }
             }
         }
-        for (pixel, count) in take(&format!("dropped.{part}")).into_iter().flatten().enumerate() {
-            if count > film.part_samples(pixel)[part] {
+        for (pixel, count) in take(&format!("dropped.{block}")).into_iter().flatten().enumerate() {
+            if count > film.block_samples(pixel)[block] {
                 return Err(damaged("more samples are left out than there are"));
             }
             if count > 0 {
-                film.dropped.insert((pixel, part), count);
+                film.dropped.insert((pixel, block), count);
             }
         }
     }
     if provenance.transparent {
         let missed = take(MISSED).ok_or_else(|| damaged("there is no channel `missed`"))?;
-        if (0..film.pixels()).any(|pixel| missed[pixel] > film.part_samples(pixel).iter().sum()) {
+        if (0..film.pixels()).any(|pixel| missed[pixel] > film.finite_samples(pixel)) {
             return Err(damaged("more samples met nothing than there are"));
         }
         film.missed = Some(missed);

@@ -2,16 +2,16 @@
 
 use super::file::{about, read};
 use super::provenance::Provenance;
+use crate::film::BLOCKS;
 use crate::memory::{available, gib};
 use crate::picture::Development;
 use crate::render::Rendered;
-use crate::sampling::PARTS;
 use crate::{Error, Result};
 use std::ops::Range;
 use std::path::PathBuf;
 
 /// Bytes a pixel of a film, its sums and its numbers of samples.
-const FILM: u64 = 24 * PARTS as u64 + 4;
+const FILM: u64 = 24 * BLOCKS as u64 + 4;
 /// The means that a picture is written from.
 const MEANS: u64 = 12;
 /// Beside these: decoded blocks of a file, and what is read of it before it is put into the film. Measured.
@@ -125,12 +125,12 @@ mod tests {
     #[test]
     fn memory_is_asked_for_what_merging_takes() {
         let size = (1000, 1000);
-        assert!(fits(size, 2, Some(FIXED + 312_000_000)).is_ok() && fits(size, 2, None).is_ok());
-        let said = fits(size, 2, Some(FIXED + 311_999_999)).unwrap_err().to_string();
+        assert!(fits(size, 2, Some(FIXED + 600_000_000)).is_ok() && fits(size, 2, None).is_ok());
+        let said = fits(size, 2, Some(FIXED + 599_999_999)).unwrap_err().to_string();
         assert!(
             said.contains("1000 x 1000") && said.contains("another machine") && !said.contains("--width"),
             "{said}"
         );
-        assert!(fits(size, 1, Some(FIXED + 212_000_000)).is_ok());
+        assert!(fits(size, 1, Some(FIXED + 404_000_000)).is_ok());
     }
 }

@@ -1,8 +1,7 @@
 //! The progressive loop: batches, limits (samples, time, noise), progress, cancellation.
 //!
-//! Samples are summed in groups of one part each ([`PARTS`](crate::sampling::PARTS)), whose bounds depend on the sample's index alone:
-//! within a part 0, 1, 2, 4, then every 4. A batch is one tile and some whole groups of every part, as many as a device does in the time it
-//! asks for. How the work was cut into batches therefore never shows in the picture: the same groups are added in the same order, to
+//! Samples are summed in groups that follow each other, whose bounds depend on the sample's index alone: one by one below 8, by two below 16, then by four.
+//! A batch is one tile and some of these groups, as many as a device does in the time it asks for. How the work was cut into batches therefore never shows in the picture: the same groups are added in the same order, to
 //! the last bit. A limit of the noise is looked at after numbers of samples that follow from the picture alone, so it does not depend on the
 //! device's speed either.
 //!
@@ -114,10 +113,9 @@ pub fn resume(
 
 #[cfg(test)]
 mod tests {
-    use super::schedule::group_length;
     use super::*;
     use crate::Error;
-    use crate::film::{AovSum, Batch, PixelSum, Rays, Tile};
+    use crate::film::{AovSum, Batch, PixelSum, Rays, Tile, group_length};
     use crate::sampling::{random4, uniform};
     use std::ops::Range;
 

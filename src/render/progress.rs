@@ -1,7 +1,6 @@
 //! When a render ends, and how far it is.
 
 use crate::film::ErrorEstimate;
-use crate::sampling::PARTS;
 
 /// When to end. Whichever limit is met first counts; without any, only `stop` ends a render.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -17,10 +16,10 @@ pub struct Limits {
 
 /// A limit of the noise ends a render without being met after this many samples a pixel if there is still nothing to estimate: the picture is black
 /// but for fireflies, or every sample was lost.
-pub const MOST_WITHOUT_ESTIMATE: u32 = 256 * PARTS;
+pub const MOST_WITHOUT_ESTIMATE: u32 = 1024;
 
 /// No noise limit is met before this many samples a pixel: fewer may all have missed the same light.
-pub const LEAST_FOR_NOISE: u32 = 8 * PARTS;
+pub const LEAST_FOR_NOISE: u32 = 32;
 
 /// How far a render is.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

@@ -2,7 +2,7 @@
 
 use super::progress::{LEAST_FOR_NOISE, Progress};
 use super::tracer::Traced;
-use crate::film::{Batch, Film, SampleId};
+use crate::film::{Batch, Blocks, Film, SampleId};
 use crate::picture::Crop;
 use crate::{Error, Result};
 
@@ -119,12 +119,17 @@ pub(super) fn samples_of(batch: &Batch) -> u64 {
 }
 
 /// How many samples to take before the error is looked at again: those that bring it from `relative` to `limit`, and a little more, but
-/// at most as many again as there are. The estimate of an error from few samples is not to be relied on.
+/// at most as many again as there are. The estimate of an error from few samples is not to be relied on. Whole blocks, where both picture and estimate are
+/// better than between.
 fn samples_to_reach(samples: u32, relative: f64, limit: f64) -> u32 {
     let needed = f64::from(samples) * (relative / limit).powi(2);
     let least = samples.saturating_add(samples / 32 + 1);
+    let most = samples.saturating_mul(2).max(least);
     // Rust's `as` saturates.
-    ((1.01 * needed) as u32).clamp(least, samples.saturating_mul(2).max(least))
+    let aim = ((1.01 * needed) as u32).clamp(least, most);
+    let length = Blocks::of(0..aim).length();
+    let whole = aim.checked_next_multiple_of(length).filter(|whole| *whole <= most);
+    whole.unwrap_or((aim / length * length).max(least))
 }
 
 #[cfg(test)]
@@ -134,10 +139,11 @@ mod tests {
     #[test]
     fn the_next_look_at_the_noise() {
         // Four times the error needs sixteen times the samples, and is not believed at once.
-        assert_eq!(samples_to_reach(100, 0.4, 0.1), 200);
-        assert_eq!(samples_to_reach(100, 0.11, 0.1), 122);
-        assert_eq!(samples_to_reach(100, 0.1001, 0.1), 104);
-        assert_eq!(samples_to_reach(100, f64::INFINITY, 0.1), 200);
+        assert_eq!(samples_to_reach(128, 0.4, 0.1), 256);
+        // Not 156, 104 and 200: whole blocks of 32, of 16, and of 32 that are not more than twice as many samples.
+        assert_eq!(samples_to_reach(128, 0.11, 0.1), 160);
+        assert_eq!(samples_to_reach(100, 0.1001, 0.1), 112);
+        assert_eq!(samples_to_reach(100, f64::INFINITY, 0.1), 192);
         assert_eq!(samples_to_reach(u32::MAX - 1, 0.2, 0.1), u32::MAX);
     }
 }

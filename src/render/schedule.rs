@@ -1,38 +1,30 @@
 //! How a render is cut into batches.
 
-use crate::film::{Batch, Film, Tile};
-use crate::sampling::PARTS;
+use crate::film::{Batch, Film, GROUPS_IN_TURN, LONGEST_GROUP, Tile, group_length};
 
-/// The most samples of a pixel in one batch: a workgroup for each group of every part, and as many as every Vulkan device takes along an axis.
-const MAX_PASS: u64 = 65_535 * (LONGEST * PARTS) as u64;
+/// The most samples of a pixel in one batch: a workgroup for what an invocation takes, and as many as every Vulkan device takes along an axis.
+const MAX_PASS: u64 = 65_535 * (LONGEST_GROUP * GROUPS_IN_TURN) as u64;
 
-/// The most samples of one group: few enough to add them up in `f32`, and that an invocation of the kernel, which takes a group of every part,
-/// stays short (Mesa before 23 ends a shader's loops after 65 535 rounds).
-const LONGEST: u32 = 4;
-
-/// Samples in the groups that begin at sample `start`: powers of two up to 4, then 4.
-pub(super) fn group_length(start: u32) -> u32 {
-    let in_part = (start / PARTS).clamp(1, LONGEST);
-    1 << in_part.ilog2()
+/// Where the groups end that one invocation of the kernel takes in turn, among them the one with sample `start`.
+fn groups_end(start: u32) -> u32 {
+    let stride = group_length(start) * GROUPS_IN_TURN;
+    (start / stride + 1).saturating_mul(stride)
 }
 
-/// Where the groups that hold sample `start` end.
-fn groups_end(start: u32) -> u32 {
-    let stride = group_length(start) * PARTS;
-    // Up to the longest ones, groups begin at as many samples as they hold.
-    (start / stride + 1).saturating_mul(stride)
+/// Where groups of another length begin than at sample `start`.
+fn equal_end(start: u32) -> u32 {
+    match start {
+        0..8 => 8,
+        8..16 => 16,
+        _ => u32::MAX,
+    }
 }
 
 /// Whether a pass over the film may take these samples; an empty range, between two passes, counts as one.
 pub(crate) fn is_a_pass(samples: std::ops::Range<u32>) -> bool {
     let length = u64::from(samples.end - samples.start);
     // Groups of one pass are of equal length.
-    let equal = match samples.start / PARTS {
-        0 => 2 * PARTS,
-        1..LONGEST => groups_end(samples.start),
-        _ => u32::MAX,
-    };
-    length == 0 || samples.end <= equal && length <= MAX_PASS
+    length == 0 || samples.end <= equal_end(samples.start) && length <= MAX_PASS
 }
 
 /// Cuts the work into batches: pass after pass over the whole film, so that it fills evenly.
@@ -82,7 +74,7 @@ impl Schedule {
         empty || self.y == self.height && self.pass.end >= self.spp
     }
 
-    /// The next batch, of at most `budget` samples and `max_sums` sums, but at least a group of every part of one pixel.
+    /// The next batch, of at most `budget` samples and `max_sums` sums, but at least what an invocation of the kernel takes of one pixel.
     pub(super) fn next(&mut self, budget: u64, max_sums: usize) -> Option<Batch> {
         if self.is_done() {
             return None;
@@ -115,20 +107,15 @@ impl Schedule {
 
     /// Where a pass from sample `start` ends: several groups of equal length if the whole film with them fits one batch.
     fn pass_end(&self, start: u32, budget: u64, max_sums: u64) -> u32 {
-        let parts = u64::from(PARTS);
-        let stride = u64::from(group_length(start)) * parts;
+        let in_turn = u64::from(GROUPS_IN_TURN);
+        let stride = u64::from(group_length(start)) * in_turn;
         // After an end in the middle of groups, first their rest: where the next ones begin must not depend on the device's speed.
         let begun = u64::from(start) % stride != 0;
         let pixels = u64::from(self.width) * u64::from(self.height);
-        let fitting = (budget / (pixels * stride)).min(max_sums / (pixels * parts)).max(1);
+        let fitting = (budget / (pixels * stride)).min(max_sums / (pixels * in_turn)).max(1);
         let fitting = if begun { 1 } else { fitting };
-        // Up to the longest ones the groups grow: only the first two are of equal length.
         let end = u64::from(groups_end(start)) + (fitting - 1) * stride;
-        let equal = match start / PARTS {
-            0 => 2 * parts,
-            1..LONGEST => u64::from(groups_end(start)),
-            _ => u64::from(start) + MAX_PASS,
-        };
+        let equal = u64::from(equal_end(start)).min(u64::from(start) + MAX_PASS);
         let aim = if self.aim > start { self.aim } else { u32::MAX };
         end.min(equal).min(u64::from(self.spp.min(aim))) as u32
     }
@@ -144,11 +131,14 @@ mod tests {
 
     #[test]
     fn group_bounds() {
-        let bounds: Vec<u32> = std::iter::successors(Some(0), |b| Some(groups_end(*b)))
-            .map(|b| b / PARTS)
-            .take_while(|b| *b <= 64)
-            .collect();
-        assert_eq!(bounds, [0, 1, 2, 4, 8, 12, 16, 20, 24, 28, 32, 36, 40, 44, 48, 52, 56, 60, 64]);
+        let bounds: Vec<u32> =
+            std::iter::successors(Some(0), |b| Some(groups_end(*b))).take_while(|b| *b <= 96).collect();
+        assert_eq!(bounds, [0, 4, 8, 16, 32, 48, 64, 80, 96]);
+        for start in 0..1000 {
+            assert!((start..equal_end(start).min(2000)).all(|next| group_length(next) == group_length(start)));
+            let next = equal_end(start);
+            assert!(next == u32::MAX || group_length(next) > group_length(start));
+        }
         assert!(
             (0..1000).all(|start| groups_end(start) > start && groups_end(groups_end(start) - 1) == groups_end(start))
         );
@@ -175,8 +165,8 @@ mod tests {
     #[test]
     fn a_single_pixel_stays_within_the_dispatch_limit() {
         let mut schedule = fresh((1, 1), u32::MAX);
-        schedule.pass.end = 16 * PARTS;
-        assert_eq!(schedule.next(1 << 40, 1 << 30).map(|b| b.groups()), Some(65_535 * PARTS));
+        schedule.pass.end = 64;
+        assert_eq!(schedule.next(1 << 40, 1 << 30).map(|b| b.groups()), Some(65_535 * GROUPS_IN_TURN));
     }
 
     #[test]

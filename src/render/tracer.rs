@@ -31,7 +31,7 @@ pub trait Tracer {
     /// If the device fails.
     fn aovs(&mut self, tile: Tile, samples: Range<u32>) -> Result<Vec<AovSum>>;
 
-    /// The most sums (pixels times groups) that one batch may ask for; at least [`PARTS`](crate::sampling::PARTS).
+    /// The most sums (pixels times groups) that one batch may ask for; at least [`GROUPS_IN_TURN`](crate::film::GROUPS_IN_TURN).
     fn max_sums(&self) -> usize;
 
     /// How many seconds one batch should take: short on a GPU that also draws a desktop.

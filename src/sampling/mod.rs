@@ -14,7 +14,7 @@
 //!
 //! Whether a ray passes a surface that is partly transparent is decided by [`coverage`], for each surface on its way.
 //!
-//! [`Sampler::Sobol`] spreads the samples of a pixel out: numbers 0 and 1 of a block form one two-dimensional point set, numbers 2
+//! [`Sampler::Sobol`] spreads the samples of a pixel out, which are one sequence from number 0 on: numbers 0 and 1 of a block form one two-dimensional point set, numbers 2
 //! and 3 another ([`sobol`]). What belongs together, such as the two numbers of a direction, is therefore such a pair.
 
 mod alias;
@@ -25,11 +25,6 @@ pub mod sobol;
 pub use alias::AliasTable;
 pub use random::{random4, uniform};
 pub use sampler::Sampler;
-
-/// Into how many independent parts the samples of a pixel fall: sample `s` is number `s / PARTS` of part `s % PARTS`. Each part has a
-/// scrambling of its own, so that the spread of their means gives an estimate of the error, which one sequence could not: its samples
-/// depend on each other. More parts would give a better estimate, and spread the samples out less well.
-pub const PARTS: u32 = 4;
 
 /// The block that the sensor draws from.
 pub const SENSOR_BLOCK: u32 = 0;

@@ -1,6 +1,6 @@
 //! Which kind of numbers a picture is made of.
 
-use super::{PARTS, random4, sobol};
+use super::{random4, sobol};
 
 /// Where the random numbers come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Deserialize)]
@@ -8,8 +8,8 @@ use super::{PARTS, random4, sobol};
 pub enum Sampler {
     /// Independent numbers: [`random4`].
     Independent,
-    /// Owen-scrambled Sobol points, two dimensions at a time: [`sobol::sobol4`]. Less noise for the same number of samples, most of all
-    /// where that number is a power of two.
+    /// Owen-scrambled Sobol points, two dimensions at a time: [`sobol::sobol4`], of which sample `s` of a pixel is number `s`. Less noise for the same
+    /// number of samples, most of all where that number is a power of two.
     #[default]
     Sobol,
 }
@@ -19,7 +19,7 @@ impl Sampler {
     pub fn numbers(self, pixel: u32, sample: u32, block: u32, seed: u32) -> [u32; 4] {
         match self {
             Sampler::Independent => random4(pixel, sample, block, seed),
-            Sampler::Sobol => sobol::sobol4(pixel, sample % PARTS, sample / PARTS, block, seed),
+            Sampler::Sobol => sobol::sobol4(pixel, sample, block, seed),
         }
     }
 }

@@ -40,9 +40,10 @@ pub fn second_dimension(index: u32) -> u32 {
 }
 
 /// The four numbers of a block: two pairs, each a scrambled (0, 2)-sequence in `index`, independent of each other and of all other
-/// pixels, parts, blocks and seeds.
-pub fn sobol4(pixel: u32, part: u32, index: u32, block: u32, seed: u32) -> [u32; 4] {
-    let seeds = random4(pixel, !part, block, seed);
+/// pixels, blocks and seeds.
+pub fn sobol4(pixel: u32, index: u32, block: u32, seed: u32) -> [u32; 4] {
+    // In the place of a sample: the same for all of them.
+    let seeds = random4(pixel, u32::MAX, block, seed);
     // Four numbers make six seeds: those of one pair are independent.
     let [x0, y0] = pair(index, seeds[2] ^ seeds[3], [seeds[0], seeds[1]]);
     let [x1, y1] = pair(index, seeds[0] ^ seeds[1], [seeds[2], seeds[3]]);

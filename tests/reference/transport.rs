@@ -236,7 +236,8 @@ fn the_partition_of_the_work_does_not_matter() {
     let mut tracer = Reference::new(&scene);
     let all = Tile { x: 0, y: 0, width: 12, height: 10 };
     let whole = tracer.trace(&Batch { tile: all, samples: 3..19, group: 2 }).expect("traced").sums;
-    assert_eq!(whole.len(), 8 * 120);
+    // The first begins in the middle, and the last ends there.
+    assert_eq!(whole.len(), 9 * 120);
 
     let brute =
         Reference::brute_force(&scene).trace(&Batch { tile: all, samples: 3..19, group: 2 }).expect("traced").sums;
@@ -266,12 +267,14 @@ fn the_partition_of_the_work_does_not_matter() {
         })
     };
     for pixel in 0..120 {
-        // The samples of a group are four apart.
-        assert_eq!(add(&single, &[0, 4], pixel), whole[pixel]);
-        assert_eq!(add(&single, &[2, 6], pixel), whole[2 * 120 + pixel]);
-        assert_eq!(add(&single, &[9, 13], pixel), whole[5 * 120 + pixel]);
-        assert_eq!(add(&single, &[1, 5, 9], pixel), uneven[120 + pixel]);
-        assert_eq!(add(&single, &[15], pixel), uneven[7 * 120 + pixel]);
+        // Groups begin at multiples of their length.
+        assert_eq!(add(&single, &[0], pixel), whole[pixel]);
+        assert_eq!(add(&single, &[1, 2], pixel), whole[120 + pixel]);
+        assert_eq!(add(&single, &[13, 14], pixel), whole[7 * 120 + pixel]);
+        assert_eq!(add(&single, &[15], pixel), whole[8 * 120 + pixel]);
+        assert_eq!(add(&single, &[0, 1, 2], pixel), uneven[pixel]);
+        assert_eq!(add(&single, &[12, 13, 14], pixel), uneven[4 * 120 + pixel]);
+        assert_eq!(add(&single, &[15], pixel), uneven[5 * 120 + pixel]);
     }
 }
 

@@ -66,8 +66,9 @@ pub fn calibrate(
     };
     let truth = picture(FIRST_SEED - 1, truth)?;
     // Of each pixel by itself: beside a small lamp its neighbours' would be far too much.
+    let convergence = truth.error_map().expect("many samples").convergence;
     let truth_variance: Vec<[f64; 3]> =
-        (0..truth.pixels()).map(|pixel| truth.variance(pixel).expect("many samples")).collect();
+        (0..truth.pixels()).map(|pixel| truth.variance(pixel, convergence).expect("many samples")).collect();
     let brightness = truth.brightness();
     let mut found = vec![];
     for &spp in spp {

@@ -1,8 +1,7 @@
 //! Tests of hypotheses. A `p` is the probability that a right program gives a result at least as far off.
 
-use luminaire::film::{Batch, Tile};
+use luminaire::film::{Batch, GROUPS_IN_TURN, Tile};
 use luminaire::render::Tracer;
-use luminaire::sampling::PARTS;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use statrs::function::erf::erfc;
 
@@ -59,13 +58,14 @@ pub struct Image {
     pub rays: u64,
 }
 
-/// Renders samples 0 to `samples` of every pixel, in `groups` equal groups (a multiple of [`PARTS`]), from whose spread the variance follows.
+/// Renders samples 0 to `samples` of every pixel, in `groups` equal groups, from whose spread the variance follows: not too small, since those of
+/// one sequence ([`sobol`](luminaire::sampling::sobol)) make up for each other.
 pub fn render(tracer: &mut dyn Tracer, width: u32, height: u32, samples: u32, groups: u32) -> Image {
-    assert!(groups >= 2 && groups.is_multiple_of(PARTS) && samples.is_multiple_of(groups));
+    assert!(groups >= 2 && samples.is_multiple_of(groups));
     let tile = Tile { x: 0, y: 0, width, height };
     let group = samples / groups;
-    // Shorter sums than that where it can be: an invocation of the kernel takes one of every part.
-    let pieces = if group.is_multiple_of(PARTS) { PARTS } else { 1 };
+    // Shorter sums than that where it can be: an invocation of the kernel takes several.
+    let pieces = if group.is_multiple_of(GROUPS_IN_TURN) { GROUPS_IN_TURN } else { 1 };
     let batch = Batch { tile, samples: 0..samples, group: group / pieces };
     let traced = tracer.trace(&batch).expect("the tracer works");
     assert_eq!(traced.dropped, []);
@@ -73,10 +73,8 @@ pub fn render(tracer: &mut dyn Tracer, width: u32, height: u32, samples: u32, gr
     assert_eq!(traced.sums.len(), pixels * (groups * pieces) as usize);
     let n = f64::from(groups);
     let value = |pixel: usize, group: usize, channel: usize| {
-        // Pieces of a group follow each other with those of the other parts between them.
-        let (parts, pieces) = (PARTS as usize, pieces as usize);
-        let first = group / parts * parts * pieces + group % parts;
-        let sums = (0..pieces).map(|piece| traced.sums[(first + piece * parts) * pixels + pixel].radiance[channel]);
+        let pieces = group * pieces as usize..(group + 1) * pieces as usize;
+        let sums = pieces.map(|piece| traced.sums[piece * pixels + pixel].radiance[channel]);
         sums.sum::<f64>() * n / f64::from(samples)
     };
     let estimate =

@@ -3,8 +3,8 @@
 use super::sight::Sight;
 use luminaire::Result;
 use luminaire::film::Film;
+use luminaire::film::GROUPS_IN_TURN;
 use luminaire::render::{Budget, Pace, Progress, Rendered, Run, SceneTracer};
-use luminaire::sampling::PARTS;
 use luminaire::scene::FilmSettings;
 
 /// The seconds that one batch should take: for so long the worker does not look at what the window wants.
@@ -93,7 +93,7 @@ impl Lane {
         Ok(true)
     }
 
-    /// The coarseness of the finest film whose first pass takes no more than `seconds`. A pass is one sample a pixel in a coarse film, [`PARTS`] in the
+    /// The coarseness of the finest film whose first pass takes no more than `seconds`. A pass is one sample a pixel in a coarse film, [`GROUPS_IN_TURN`] in the
     /// window's own resolution.
     fn coarseness_within(&self, seconds: f64, sight: &Sight) -> u32 {
         let samples = self.budget.samples() as f64 * seconds / BATCH_SECONDS;
@@ -101,7 +101,7 @@ impl Lane {
             let FilmSettings { width, height, .. } = sight.film;
             f64::from(width.div_ceil(coarseness)) * f64::from(height.div_ceil(coarseness))
         };
-        let pass = |coarseness: u32| pixels(coarseness) * f64::from(if coarseness == 1 { PARTS } else { 1 });
+        let pass = |coarseness: u32| pixels(coarseness) * f64::from(if coarseness == 1 { GROUPS_IN_TURN } else { 1 });
         [1, 2, 4].into_iter().find(|coarseness| pass(*coarseness) <= samples).unwrap_or(COARSEST)
     }
 
@@ -117,7 +117,7 @@ impl Lane {
         match &self.work {
             Some(work) if work.before.is_some() => Stage::Better,
             Some(work) if work.film().least_samples() == 0 => Stage::Nothing,
-            Some(work) if work.film().most_samples() <= PARTS => Stage::Quick,
+            Some(work) if work.film().most_samples() <= GROUPS_IN_TURN => Stage::Quick,
             Some(_) => Stage::Better,
             None => Stage::Nothing,
         }

@@ -2,10 +2,12 @@
 
 use luminaire::film::{ErrorEstimate, Film, relative_in_words};
 use luminaire::picture::{Development, to_srgb8};
-use luminaire::sampling::PARTS;
 
 /// From this share of black pixels on a picture probably lacks what it was meant to show.
 const MOSTLY_BLACK: f64 = 0.95;
+
+/// From fewer samples a pixel it cannot be told how fast the error falls.
+const LEAST_SAMPLES: u32 = 4;
 
 /// The estimated error, or why there is none; what it does not cover is named. `lacks_light` is that the warnings tell of light which no
 /// estimator finds.
@@ -13,7 +15,7 @@ pub fn error_line(film: &Film, error: Option<ErrorEstimate>, lacks_light: bool) 
     let Some(error) = error else { return format!("{}\n", no_estimate(film)) };
     let ErrorEstimate { rmse, fireflies, unknown, .. } = error;
     let mut text = match error.relative() {
-        0.0 => format!("no noise was found in {}: all parts of them agree", samples(film)),
+        0.0 => format!("no noise was found in {}: all blocks of them agree", samples(film)),
         relative => format!("estimated error {} (RMSE {rmse:.3e})", relative_in_words(relative)),
     };
     if fireflies > 0 {
@@ -26,7 +28,7 @@ pub fn error_line(film: &Film, error: Option<ErrorEstimate>, lacks_light: bool) 
     if unknown > 0 {
         text += &format!(", without {unknown} pixels that have too few samples for an estimate");
     }
-    if film.least_samples() < PARTS {
+    if film.least_samples() < LEAST_SAMPLES {
         text += &format!("; uncertain, from {} samples a pixel", film.least_samples());
     }
     if let Some(share) = film.black_share().filter(|share| *share >= MOSTLY_BLACK && film.least_samples() > 0) {
@@ -118,9 +120,9 @@ mod tests {
     fn film(samples: u32, lit: usize, radiance: f64) -> Film {
         let mut film = Film::new(8, 5).unwrap();
         film.samples.fill(samples);
-        let parts = film.part_samples(0).map(f64::from);
+        let blocks = film.block_samples(0).map(f64::from);
         for sums in film.sums.iter_mut().take(lit) {
-            *sums = parts.map(|samples| [samples * radiance; 3]);
+            *sums = blocks.map(|samples| [samples * radiance; 3]);
         }
         film
     }
@@ -133,7 +135,7 @@ mod tests {
         assert!(says(&film(1, 40, 1.0)).contains("one sample a pixel tells nothing"));
         assert!(says(&film(0, 40, 1.0)).contains("no sample is finite"));
         let flat = says(&film(16, 40, 1.0));
-        assert_eq!(flat, "no noise was found in 16 samples a pixel: all parts of them agree\n");
+        assert_eq!(flat, "no noise was found in 16 samples a pixel: all blocks of them agree\n");
         let lamp = film(16, 1, 1.0);
         assert!(says(&lamp).contains("no noise was found") && says(&lamp).contains("97.5 % of the pixels are black"));
         assert!(error_line(&lamp, lamp.error(), true).contains("the warnings say what the picture lacks"));

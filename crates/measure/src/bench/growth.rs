@@ -16,9 +16,9 @@ use crate::report::table::Table;
 use crate::report::words::number;
 use luminaire::Result;
 use luminaire::backend::Backend;
+use luminaire::film::GROUPS_IN_TURN;
 use luminaire::film::{Batch, Tile};
 use luminaire::render::Tracer;
-use luminaire::sampling::PARTS;
 use luminaire::scene::{Estimator, Extinction, Integrator, Scene};
 use std::time::Instant;
 
@@ -220,7 +220,7 @@ struct Once {
 impl Picture {
     /// With as many samples a pixel as take the plan's seconds.
     fn calibrated(tracer: Box<dyn Tracer>, side: u32, plan: &Plan) -> Result<Self> {
-        let least = plan.group * PARTS;
+        let least = plan.group * GROUPS_IN_TURN;
         let mut picture = Picture { tracer, side, samples: least, group: plan.group };
         // The first run compiles the kernel, and the last is as warm as the rounds.
         picture.render_tile(Tile { x: 0, y: 0, width: side.min(8), height: side.min(8) }, 0)?;
@@ -237,8 +237,8 @@ impl Picture {
 
     fn render(&mut self) -> Result<Once> {
         // As many samples in a batch as it can hold of the whole picture, else rows of it.
-        let least = self.group * PARTS;
-        let room = self.tracer.max_sums() as u32 / PARTS;
+        let least = self.group * GROUPS_IN_TURN;
+        let room = self.tracer.max_sums() as u32 / GROUPS_IN_TURN;
         let rows = (room / self.side).clamp(1, self.side);
         let step = (room / (rows * self.side)).max(1) * least;
         let mut all = Once { seconds: 0.0, samples: 0.0, rays: 0.0 };
@@ -255,7 +255,7 @@ impl Picture {
     }
 
     fn render_tile(&mut self, tile: Tile, first: u32) -> Result<Once> {
-        self.batch(tile, first..first + self.group * PARTS)
+        self.batch(tile, first..first + self.group * GROUPS_IN_TURN)
     }
 
     fn batch(&mut self, tile: Tile, samples: std::ops::Range<u32>) -> Result<Once> {

@@ -4,7 +4,6 @@ use crate::statistics::Estimate;
 use luminaire::Result;
 use luminaire::film::{Batch, PixelSum, Tile};
 use luminaire::render::Tracer;
-use luminaire::sampling::PARTS;
 use std::time::Instant;
 
 /// Rays of one batch, about: a second of a software device, and far less than what a desktop's watchdog minds.
@@ -32,7 +31,7 @@ impl Trial {
         Self::grouped(tracer, size, (samples, 1), rays)
     }
 
-    /// The same for `count` groups of `group` samples (a multiple of [`PARTS`], unless they are single samples), of which the means are kept. A group takes a device less time than as many samples
+    /// The same for `count` groups of `group` samples, of which the means are kept. A group takes a device less time than as many samples
     /// alone, where their lengths differ: none waits for the longest.
     pub(super) fn grouped(
         tracer: &mut dyn Tracer,
@@ -44,9 +43,6 @@ impl Trial {
         let pixels = tile.pixels();
         let most = (tracer.max_sums() / pixels).min(32_768) as f64;
         let step = (BATCH_RAYS / (pixels as f64 * f64::from(group) * rays)).clamp(1.0, most) as u32;
-        // A batch of whole groups has as many of every part.
-        let whole = |groups: u32| if group == 1 { groups } else { (groups / PARTS).max(1) * PARTS };
-        let (count, step) = (whole(count), whole(step));
         let mut trial = Trial { groups: Vec::new(), group, pixels, rays: 0, seconds: 0.0 };
         let start = Instant::now();
         for first in (0..count).step_by(step as usize) {
