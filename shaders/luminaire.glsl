@@ -72,10 +72,10 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, vec3 throughput, uvec4 r
     if (frame.luminaire_count == 0u) return vec3(0.0);
     Luminaire light = load_luminaire(choose_luminaire(random.z));
     // With one kind of luminaire in the scene these are constants.
-    bool several = int(POINT_LUMINAIRES) + int(INFINITE_LUMINAIRES) + int(AREA_LUMINAIRES) + int(ENVIRONMENT) > 1;
+    bool several = int(POINT_LUMINAIRES) + int(INFINITE_LUMINAIRES) + int(AREA_LUMINAIRES) + int(ENVIRONMENT_SAMPLING) > 1;
     bool infinite = INFINITE_LUMINAIRES && (!several || light.kind == INFINITE);
     bool area = AREA_LUMINAIRES && (!several || light.kind == AREA);
-    bool surroundings = ENVIRONMENT && (!several || light.kind == SURROUNDINGS);
+    bool surroundings = ENVIRONMENT_SAMPLING && (!several || light.kind == SURROUNDINGS);
     // Unshadowed radiance over the density of finding it, and the shadow ray that must reach (0, t_max) unhindered.
     vec3 target = light.a;
     vec3 wi = target;
@@ -84,7 +84,7 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, vec3 throughput, uvec4 r
     float target_error = light.position_error;
     float t_max = INFINITY;
     if (surroundings) {
-        wi = sample_environment(random.w, uniform2(random.xy), density);
+        wi = sample_environment(random.xy, density);
         incident = environment_radiance(wi) / (density * light.probability);
         density *= light.probability;
     } else if (!infinite) {

@@ -48,7 +48,7 @@ bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uve
         // Without an environment escaping light disappears.
         if (ENVIRONMENT) {
             float density = 0.0;
-            if (LIGHT_SAMPLING == LIGHT_MIS && path.pdf != IMPULSE) {
+            if (ENVIRONMENT_SAMPLING && LIGHT_SAMPLING == LIGHT_MIS && path.pdf != IMPULSE) {
                 density = frame.environment_probability * environment_density(path.direction);
             }
             float weight = emission_weight(path.pdf, density);

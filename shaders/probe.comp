@@ -38,7 +38,7 @@ const uint UNIFORM_HEMISPHERE = 8u;   // in: u; out: direction
 const uint GLOSSY_HALF_VECTOR = 9u;   // in: u, m; out: direction
 const uint SCATTER = 10u;             // in: wo, material; random (normal +z, outside); out: wi, pdf (-1: impulse); weight, eta^2
 const uint SPHERICAL_TRIANGLE = 11u;  // in: point, luminaire; u; out: direction, solid angle (0: too far)
-const uint SAMPLE_ENVIRONMENT = 12u;  // in: random, u; out: direction, density
+const uint SAMPLE_ENVIRONMENT = 12u;  // in: two numbers; out: direction, density
 const uint ENVIRONMENT_AT = 13u;      // in: direction; out: radiance, density
 const uint TEXTURE_AT = 14u;          // in: map, uv; out: color and alpha
 const uint REFRACT = 15u;             // in: wo, eta (normal +z); out: direction, Fresnel's reflectance
@@ -128,7 +128,7 @@ void main() {
     }
     case SAMPLE_ENVIRONMENT: {
         float density;
-        vec3 wi = sample_environment(x.x, uintBitsToFloat(x.yz), density);
+        vec3 wi = sample_environment(x.xy, density);
         result = floatBitsToUint(vec4(wi, density));
         break;
     }

@@ -16,18 +16,20 @@ layout(constant_id = 11) const bool THIN = true;                // some material
 layout(constant_id = 12) const bool VERTEX_COLOURS = true;     // some mesh has vertex colours
 layout(constant_id = 13) const bool COATS = true;              // some material has a base under a smooth dielectric
 layout(constant_id = 14) const bool MAP_TRANSFORMS = true;     // some map is moved or scaled
-layout(constant_id = 15) const bool ORTHOGRAPHIC = false;
-layout(constant_id = 16) const bool SOBOL = false;
+layout(constant_id = 15) const bool ENVIRONMENT_IMAGE = true;  // that light has an image
+layout(constant_id = 16) const bool ENVIRONMENT_SAMPLING = true;    // light is sampled from there
+layout(constant_id = 17) const bool ORTHOGRAPHIC = false;
+layout(constant_id = 18) const bool SOBOL = false;
 
 // The integrator's choices (src/scene/estimator.rs).
-layout(constant_id = 17) const bool SIMPLE = false;            // the simple ray tracer instead of the path tracer
-layout(constant_id = 18) const uint LIGHT_SAMPLING = 2u;
-layout(constant_id = 19) const bool SOLID_ANGLE = true;        // near triangles are sampled by solid angle
-layout(constant_id = 20) const uint DIRECTIONS = 2u;
-layout(constant_id = 21) const uint EXTINCTION = 3u;
-layout(constant_id = 22) const bool THRESHOLD = false;         // paths of small albedo end
+layout(constant_id = 19) const bool SIMPLE = false;            // the simple ray tracer instead of the path tracer
+layout(constant_id = 20) const uint LIGHT_SAMPLING = 2u;
+layout(constant_id = 21) const bool SOLID_ANGLE = true;        // near triangles are sampled by solid angle
+layout(constant_id = 22) const uint DIRECTIONS = 2u;
+layout(constant_id = 23) const uint EXTINCTION = 3u;
+layout(constant_id = 24) const bool THRESHOLD = false;         // paths of small albedo end
 
-layout(constant_id = 23) const bool TRANSPARENT = false;       // the camera does not see where its rays escape to, and they are counted
+layout(constant_id = 25) const bool TRANSPARENT = false;       // the camera does not see where its rays escape to, and they are counted
 
 const uint LIGHT_NONE = 0u;
 const uint LIGHT_DIRECT = 1u;
@@ -68,6 +70,8 @@ layout(set = 0, binding = 0, std140) uniform Frame {
     float least_probability;              // with which an emissive triangle is chosen
     float start;                          // distance along the line of sight at which rays start, where the eye point is too far away
     float lens_at_start;                  // what is left there of a ray's offset on the lens
+    uint environment_rows;                // texels of the search among the rows of the environment
+    uint environment_row;                 // and of that among the columns of one of them
     vec4 filter_table[FILTER_TEXELS];     // inverse cumulative distribution of the pixel filter: 257 knots, in pixels
 } frame;
 
@@ -140,8 +144,8 @@ layout(set = 0, binding = 10) uniform usamplerBuffer textures;
 layout(set = 0, binding = 11) uniform usamplerBuffer texels;
 // One texel a texel of the environment.
 layout(set = 0, binding = 12) uniform usamplerBuffer environment_texels;
-// Two slots of the environment's alias table in one: threshold and alias each.
-layout(set = 0, binding = 13) uniform usamplerBuffer environment_slots;
+// The search among the environment's rows, then that among the columns of each row (src/gpu/pack/environment.rs).
+layout(set = 0, binding = 13) uniform usamplerBuffer environment_choice;
 
 // Vertex colours, three texels a triangle, where VERTEX_COLOURS.
 layout(set = 0, binding = 14) uniform usamplerBuffer colours;
@@ -242,9 +246,4 @@ struct AliasSlot {
 AliasSlot luminaire_slot(uint slot) {
     uvec4 choice = texelFetch(luminaires, int(slot) * LUMINAIRE_TEXELS + 5);
     return AliasSlot(choice.y, choice.z);
-}
-
-AliasSlot environment_slot(uint slot) {
-    uvec4 pair = texelFetch(environment_slots, int(slot >> 1u));
-    return (slot & 1u) == 0u ? AliasSlot(pair.x, pair.y) : AliasSlot(pair.z, pair.w);
 }

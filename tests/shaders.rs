@@ -256,7 +256,7 @@ fn twins() -> Vec<(&'static str, f64)> {
     use luminaire::gpu::probe::Function;
     use luminaire::gpu::specialization::{directions_number, extinction_number, light_sampling_number};
     use luminaire::reference::{luminaire as light, path, scatter};
-    use luminaire::sampling::SENSOR_BLOCK;
+    use luminaire::sampling::{CDF_NUMBERS, SENSOR_BLOCK};
     use luminaire::scene::{Directions, Extinction, Filter, LightSampling};
     use std::f64::consts::{FRAC_PI_4, PI};
 
@@ -314,6 +314,7 @@ fn twins() -> Vec<(&'static str, f64)> {
         ("EXTINCTION_LITERAL", extinction_number(Extinction::Literal)),
         ("EXTINCTION_SURFACE", extinction_number(Extinction::Surface)),
         ("EXTINCTION_THROUGHPUT", extinction_number(Extinction::Throughput)),
+        ("CDF_NUMBERS", CDF_NUMBERS),
         ("RANDOM4", Function::Random4 as u32),
         ("CLOSEST_HIT", Function::ClosestHit as u32),
         ("OCCLUDED", Function::Occluded as u32),

@@ -117,6 +117,12 @@ shared! {
         start: f32,
         /// What is left there of a ray's offset on the lens.
         lens_at_start: f32,
+        /// Texels of the search among the rows of the environment.
+        environment_rows: u32,
+        /// And of that among the columns of one of them.
+        environment_row: u32,
+        /// To a multiple of 16 bytes.
+        padding: [u32; 2],
         /// The filter's inverse cumulative distribution: 257 knots, in pixels.
         filter_table: [[f32; 4]; FILTER_TEXELS],
     }

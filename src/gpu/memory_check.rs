@@ -1,6 +1,7 @@
 //! Whether a scene fits into the memory of a device, before anything is uploaded.
 
 use super::layout;
+use super::pack::environment::search_tree_size;
 use super::pack::texture::texel_count;
 use super::specialization::KernelModel;
 use super::vulkan::device::Device;
@@ -41,8 +42,12 @@ impl Budget {
             geometry: triangles * triangle as u64 + objects,
             acceleration: triangles * if ray_query { ACCELERATION_STRUCTURE } else { BVH_NODES },
             textures: if textured { 8 * texels } else { 0 },
-            // A texel with its density, and its slot of the alias table.
-            environment: 24 * image.map_or(0, |image| image.texels.len() as u64),
+            environment: image.map_or(0, |image| {
+                // A texel with its density, and the searches for a row, and in each row for a column.
+                let rows = |entries: u32| u64::from(search_tree_size(entries));
+                let searches = rows(image.height) + u64::from(image.height) * rows(image.width);
+                16 * (image.texels.len() as u64 + if features.environment_sampling { searches } else { 0 })
+            }),
         }
     }
 
@@ -91,7 +96,7 @@ impl Budget {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Texture, build};
+    use crate::scene::{Environment, EnvironmentImage, Texture, build};
     use glam::{Affine2, Affine3A, Vec2, Vec3};
     use half::f16;
 
@@ -107,6 +112,14 @@ mod tests {
             ["a device allows 0.1 MiB, its heap", "fewer triangles"].iter().all(|part| error.contains(part)),
             "{error}"
         );
+
+        let texels: Vec<Vec3> = (0..1 << 15).map(|i| Vec3::splat(i as f32)).collect();
+        let image = EnvironmentImage { name: "sky".into(), width: 256, height: 128, texels };
+        let mut outside = scene.clone();
+        outside.environment = Some(Environment { radiance: Vec3::ONE, image: Some(image.into()), rotation: 0.0 });
+        // Columns in fours are 64, 16, 4, 1; rows 32, 8, 2, 1.
+        let sky = Budget::of(&outside, true, &KernelModel::of(&outside)).environment;
+        assert_eq!(sky, 16 * ((1 << 15) + 128 * 85 + 43));
 
         let texels = vec![[f16::ONE; 4]; 1 << 16].into();
         let texture = Texture { width: 256, height: 256, texels, ..Texture::default() };

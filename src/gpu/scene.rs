@@ -1,12 +1,14 @@
 //! A scene as the kernels see it: buffers, converted from the plain data.
 
 use super::accel::Geometry;
+use super::bvh::MeshBvh;
 use super::layout;
 use super::memory_check::Budget;
-use super::pack::frame::{aim, estimate, frame};
+use super::pack::environment::environment;
+use super::pack::frame::{aim, estimate, frame, light};
 use super::pack::luminaire::luminaires;
 use super::pack::material::material;
-use super::pack::texture::{environment, textures};
+use super::pack::texture::textures;
 use super::specialization::KernelModel;
 use super::vulkan::binding::Binding;
 use super::vulkan::buffer::Buffer;
@@ -25,12 +27,11 @@ pub(super) struct GpuScene {
     /// What `frame` holds.
     frame_data: layout::Frame,
     geometry: Geometry,
-    materials: TexelBuffer,
-    luminaires: TexelBuffer,
+    lighting: Lighting,
     textures: TexelBuffer,
     texels: TexelBuffer,
-    environment_texels: TexelBuffer,
-    environment_slots: TexelBuffer,
+    /// What the lighting is made of again for another integrator, with the places of the meshes' triangles; none if it is always the same.
+    lit: Option<(Scene, Vec<MeshBvh>)>,
     /// The scene's [`Scene::world_bounds`].
     bounds: (DVec3, DVec3),
     pub(super) model: KernelModel,
@@ -49,28 +50,21 @@ impl GpuScene {
         adjust(&mut model);
         Budget::of(scene, ray_query, &model).check(device)?;
         let (geometry, places) = Geometry::build(device, scene, ray_query, &model)?;
-        let materials: Vec<_> = (0..scene.materials.len()).map(|i| material(scene, &table, i)).collect();
-        let luminaires = luminaires(scene, &table, &places);
+        let lighting = Lighting::new(device, scene, &table, &places)?;
         let (textures, texels) = if model.features.textures || model.features.holes {
             textures(&scene.textures)
         } else {
             Default::default()
-        };
-        let (environment_texels, environment_slots) = match (&scene.environment, &table.environment) {
-            (Some(sky), Some(distribution)) => environment(sky, distribution),
-            _ => Default::default(),
         };
         let frame_data = frame(scene, &table);
         Ok(GpuScene {
             frame: Buffer::upload(device, "frame", &[frame_data], vk::BufferUsageFlags::UNIFORM_BUFFER)?,
             frame_data,
             geometry,
-            materials: texel_buffer(device, "materials", &materials)?,
-            luminaires: texel_buffer(device, "luminaires", &luminaires)?,
+            lighting,
             textures: texel_buffer(device, "textures", &textures)?,
             texels: texel_buffer(device, "texels", &texels)?,
-            environment_texels: texel_buffer(device, "environment", &environment_texels)?,
-            environment_slots: texel_buffer(device, "environment choice", &environment_slots)?,
+            lit: scene.environment.is_some().then(|| (scene.clone(), places)),
             bounds: scene.world_bounds(),
             model,
         })
@@ -82,8 +76,18 @@ impl GpuScene {
         self.frame.write(&[self.frame_data])
     }
 
-    /// Puts another integrator in the place of the present one; the kernel has to be made again, with the constants of `model`.
-    pub(super) fn integrate(&mut self, integrator: &Integrator) -> Result<()> {
+    /// Puts another integrator in the place of the present one; kernels have to be made again, with the constants of `model` and what is bound now.
+    pub(super) fn integrate(&mut self, device: &Arc<Device>, integrator: &Integrator) -> Result<()> {
+        if let Some((scene, places)) = &mut self.lit {
+            let same = LuminaireTable::is_same_for(scene, integrator);
+            scene.integrator = *integrator;
+            if !same {
+                let table = LuminaireTable::new(scene);
+                self.lighting = Lighting::new(device, scene, &table, places)?;
+                light(&mut self.frame_data, &table);
+                self.model.features.environment_sampling = table.environment.is_some();
+            }
+        }
         self.model.integrator = *integrator;
         estimate(&mut self.frame_data, integrator);
         self.frame.write(&[self.frame_data])
@@ -98,17 +102,39 @@ impl GpuScene {
             triangles,
             normals,
             objects,
-            Binding::Texel(&self.materials),
-            Binding::Texel(&self.luminaires),
+            Binding::Texel(&self.lighting.materials),
+            Binding::Texel(&self.lighting.luminaires),
             Binding::Storage(seven),
             Binding::Storage(eight),
             uvs,
             Binding::Texel(&self.textures),
             Binding::Texel(&self.texels),
-            Binding::Texel(&self.environment_texels),
-            Binding::Texel(&self.environment_slots),
+            Binding::Texel(&self.lighting.environment_texels),
+            Binding::Texel(&self.lighting.environment_choice),
             colours,
         ]
+    }
+}
+
+/// The luminaires, and what knows how often they are chosen.
+struct Lighting {
+    materials: TexelBuffer,
+    luminaires: TexelBuffer,
+    environment_texels: TexelBuffer,
+    environment_choice: TexelBuffer,
+}
+
+impl Lighting {
+    fn new(device: &Arc<Device>, scene: &Scene, table: &LuminaireTable, places: &[MeshBvh]) -> Result<Self> {
+        let materials: Vec<_> = (0..scene.materials.len()).map(|i| material(scene, table, i)).collect();
+        let (environment_texels, environment_choice) =
+            scene.environment.as_ref().map(|sky| environment(sky, table.environment.as_ref())).unwrap_or_default();
+        Ok(Lighting {
+            materials: texel_buffer(device, "materials", &materials)?,
+            luminaires: texel_buffer(device, "luminaires", &luminaires(scene, table, places))?,
+            environment_texels: texel_buffer(device, "environment", &environment_texels)?,
+            environment_choice: texel_buffer(device, "environment choice", &environment_choice)?,
+        })
     }
 }
 

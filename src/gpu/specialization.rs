@@ -1,8 +1,8 @@
 //! Specialization constants: the kernel models no more than a scene needs.
 
 use crate::scene::{
-    AreaSampling, Directions, Extinction, Integrator, LightSampling, Luminaire, LuminaireTable, Material, Projection,
-    SampledLuminaire, Sampler, Scene,
+    AreaSampling, Directions, Environment, Extinction, Integrator, LightSampling, Luminaire, LuminaireTable, Material,
+    Projection, SampledLuminaire, Sampler, Scene,
 };
 use glam::{Affine2, Affine3A, Vec3};
 
@@ -66,6 +66,10 @@ features! {
     coats: "coats",
     /// Some map is moved or scaled.
     map_transforms: "map transforms",
+    /// That light has an image.
+    environment_image: "image of the environment",
+    /// Light is sampled from there.
+    environment_sampling: "sampling of the environment",
 }
 
 /// The kernel that runs: the scene's features, and the choices of its integrator.
@@ -101,7 +105,7 @@ impl KernelModel {
             point_luminaires: any(|l| matches!(l, SampledLuminaire::Impulse(Luminaire::Point { .. }))),
             infinite_luminaires: any(|l| matches!(l, SampledLuminaire::Impulse(Luminaire::Infinite { .. }))),
             area_luminaires: any(|l| matches!(l, SampledLuminaire::Area(_))),
-            environment: any(|l| matches!(l, SampledLuminaire::Environment)),
+            environment: scene.environment.as_ref().is_some_and(Environment::emits),
             impulses: material(Material::has_impulse),
             dielectrics: material(|m| m.has_impulse() && m.eta.is_some()),
             textures: material(|m| {
@@ -112,6 +116,8 @@ impl KernelModel {
             vertex_colours: scene.meshes.iter().any(|m| !m.colours.is_empty()),
             coats: material(Material::is_coated),
             map_transforms: scene.textures.iter().any(|texture| texture.transform != Affine2::IDENTITY),
+            environment_image: scene.environment.as_ref().is_some_and(|e| e.emits() && e.image.is_some()),
+            environment_sampling: any(|l| matches!(l, SampledLuminaire::Environment)),
         };
         KernelModel {
             features,
@@ -135,6 +141,17 @@ impl KernelModel {
         "transparent",
     ];
 
+    /// How the kernel finds light: where nothing is sampled, by chance alone gives the same numbers.
+    fn light_sampling(&self) -> LightSampling {
+        let Features { point_luminaires, infinite_luminaires, area_luminaires, environment_sampling, .. } =
+            self.features;
+        let sampled = point_luminaires || infinite_luminaires || area_luminaires || environment_sampling;
+        match self.integrator.estimator().light_sampling {
+            LightSampling::Mis if !sampled => LightSampling::None,
+            choice => choice,
+        }
+    }
+
     /// Values of the specialization constants, by their ids.
     pub(crate) fn constants(&self) -> Vec<u32> {
         let simple = matches!(self.integrator, Integrator::Simple { .. });
@@ -144,7 +161,7 @@ impl KernelModel {
             u32::from(self.orthographic),
             u32::from(self.sampler != Sampler::Independent),
             u32::from(simple),
-            light_sampling_number(estimator.light_sampling),
+            light_sampling_number(self.light_sampling()),
             u32::from(estimator.area_sampling == AreaSampling::SolidAngle),
             directions_number(estimator.directions),
             extinction_number(estimator.extinction),

@@ -67,7 +67,9 @@ impl SceneTracer for GpuTracer {
 
     fn integrate(&mut self, integrator: &Integrator) -> Result<()> {
         integrator.check_ends()?;
-        self.bound.scene.integrate(integrator)?;
+        self.bound.scene.integrate(&self.bound.device, integrator)?;
+        // Kernels are bound to buffers that may be gone.
+        self.aov_kernel = None;
         self.kernel = self.bound.kernel::<layout::Batch>(Shader::path_trace(self.ray_query))?;
         Ok(())
     }

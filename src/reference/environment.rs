@@ -4,7 +4,6 @@
 //! `direction = (sin theta sin phi, cos theta, -sin theta cos phi)`.
 
 use super::prepared_scene::Reference;
-use crate::sampling::uniform;
 use crate::scene::{Environment, EnvironmentDistribution, EnvironmentImage};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
@@ -35,10 +34,13 @@ fn bilinear(image: &EnvironmentImage, [x, y]: [f64; 2]) -> DVec3 {
     upper.lerp(lower, y - row)
 }
 
-/// A direction, evenly over the solid angle of a texel (counted row by row from the upper left): the azimuth goes evenly with `u`,
-/// the cosine of the polar angle with `v`.
-fn direction_in_texel(environment: &Environment, [width, height]: [u32; 2], texel: usize, u: f64, v: f64) -> DVec3 {
-    let (column, row) = (texel as u32 % width, texel as u32 / width);
+/// A direction in a texel, evenly over its solid angle: the azimuth goes evenly with `u`, the cosine of the polar angle with `v`.
+fn direction_in_texel(
+    environment: &Environment,
+    [width, height]: [u32; 2],
+    [column, row]: [u32; 2],
+    [u, v]: [f64; 2],
+) -> DVec3 {
     let phi = TAU * ((f64::from(column) + u) / f64::from(width) - 0.5 - turn(environment));
     let edge = |row: u32| (PI * f64::from(row) / f64::from(height)).cos();
     let cos = edge(row) + v * (edge(row + 1) - edge(row));
@@ -61,23 +63,23 @@ impl Reference {
         environment.radiance.as_dvec3() * texel
     }
 
-    /// A unit direction to the environment: number 3 chooses the texel, numbers 1 and 2 the place in it. None if the environment is
-    /// black.
-    pub fn sample_environment(&self, random: [u32; 4]) -> Option<DVec3> {
+    /// A unit direction to the environment, chosen by two numbers, and its density per steradian, without the probability of choosing the
+    /// environment among the luminaires. None if no light is sampled there.
+    pub fn sample_environment(&self, random: [u32; 2]) -> Option<(DVec3, f64)> {
         let (environment, distribution) = self.environment()?;
-        let texel = distribution.choice.choose(random[3]);
-        let size = [distribution.width, distribution.height];
-        Some(direction_in_texel(environment, size, texel, uniform(random[0]), uniform(random[1])))
+        let (texel, place) = distribution.choose(random);
+        let direction = direction_in_texel(environment, [distribution.width, distribution.height], texel, place);
+        // Not looked up: on the edge of a texel the direction may round into the next one.
+        Some((direction, distribution.density(texel)))
     }
 
-    /// The density with which [`Reference::sample_environment`] chooses a unit direction, per steradian; without the probability
-    /// of choosing the environment among the luminaires.
+    /// The density with which [`Reference::sample_environment`] chooses a unit direction.
     pub fn environment_density(&self, direction: DVec3) -> f64 {
         let Some((environment, distribution)) = self.environment() else { return 0.0 };
         let [x, y] = image_position(environment, direction);
         // Rounding may give the edge itself.
         let cell = |share: f64, n: u32| ((share * f64::from(n)) as u32).min(n - 1);
         let (column, row) = (cell(x, distribution.width), cell(y, distribution.height));
-        distribution.density[(row * distribution.width + column) as usize]
+        distribution.density([column, row])
     }
 }

@@ -9,7 +9,7 @@ use super::path::Vertex;
 use super::prepared_scene::Reference;
 use super::surfel::mean;
 use crate::sampling::{random4, ray_salt, uniform};
-use crate::scene::{Integrator, LightSampling, Luminaire, Material, SampledLuminaire, Scene};
+use crate::scene::{Estimator, Integrator, LightSampling, Luminaire, Material, SampledLuminaire, Scene};
 use glam::{DMat3, DVec3};
 use std::f64::consts::TAU;
 
@@ -74,6 +74,8 @@ pub fn lost_light_by(scene: &Scene, tracer: &mut Option<Reference>) -> Vec<Strin
             return sentences;
         }
         let reference = tracer.get_or_insert_with(|| Reference::new(scene));
+        // All light counts, also that of a sky which is left to chance.
+        reference.set_integrator(&all_sampled(scene.integrator));
         let seen = reference.light_on_what_is_seen();
         if sampled {
             sentences.extend(reference.lost_of_luminaires(&seen));
@@ -81,8 +83,19 @@ pub fn lost_light_by(scene: &Scene, tracer: &mut Option<Reference>) -> Vec<Strin
         if may_be_short {
             sentences.extend(too_short(scene, &seen));
         }
+        reference.set_integrator(&scene.integrator);
     }
     sentences
+}
+
+/// The integrator with which every luminaire is sampled by all of its light.
+fn all_sampled(integrator: Integrator) -> Integrator {
+    match integrator {
+        Integrator::Path(estimator) => {
+            Integrator::Path(Estimator { light_sampling: LightSampling::Direct, ..estimator })
+        }
+        Integrator::Simple { .. } => integrator,
+    }
 }
 
 /// What is said where light is only met by chance, and some luminaires never are.

@@ -35,7 +35,7 @@ pub(super) struct Unoccluded {
 
 impl Reference {
     /// Radiance towards `wo` from one luminaire, chosen by number 2 of `random` in proportion to its power and weighted by
-    /// one over its probability; numbers 0 and 1 choose the point on it, with number 3 for an environment. `salt` is that of the
+    /// one over its probability; numbers 0 and 1 choose the point on it, or the direction to an environment. `salt` is that of the
     /// shadow ray; it is added, if there is one, to `rays`.
     ///
     /// `throughput` is the share of this radiance that reaches the camera, without `eta^2`, over the probability of the path, or what
@@ -92,12 +92,8 @@ impl Reference {
                 self.point_on_triangle(surfel, triangle, probability, uniform(random[0]), uniform(random[1]))
             }
             SampledLuminaire::Environment => {
-                let wi = self.sample_environment(random)?;
-                let pdf = probability * self.environment_density(wi);
-                // On the edge of a texel the direction may round into the next one, which may be black.
-                if pdf == 0.0 {
-                    return None;
-                }
+                let (wi, density) = self.sample_environment([random[0], random[1]])?;
+                let pdf = probability * density;
                 let irradiance = self.environment_radiance(wi) / pdf;
                 let origin = surfel.offset_ray_origin(wi);
                 Some(Unoccluded { wi, irradiance, pdf: Some(pdf), origin, direction: wi, t_max: f64::INFINITY })

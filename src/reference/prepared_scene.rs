@@ -3,7 +3,7 @@
 use super::instance::Instance;
 use super::tree::Trees;
 use crate::memory::available;
-use crate::scene::{FilmSettings, LuminaireTable, Scene, coat_transmittance, widen};
+use crate::scene::{FilmSettings, Integrator, LuminaireTable, Scene, coat_transmittance, widen};
 use glam::DVec3;
 
 /// The reference tracer with its scene; seed, film size and integrator are the scene's own.
@@ -52,6 +52,15 @@ impl Reference {
         let coats = coated.map(|eta| eta.map_or(1.0, |eta| coat_transmittance(eta.into()))).collect();
         let (luminaires, filter) = (LuminaireTable::new(scene), filter_table(&scene.film));
         Reference { scene: scene.clone(), instances, trees: None, luminaires, coats, filter }
+    }
+
+    /// Takes another integrator. Which luminaires are sampled, and how often, may depend on it.
+    pub(super) fn set_integrator(&mut self, integrator: &Integrator) {
+        let same = LuminaireTable::is_same_for(&self.scene, integrator);
+        self.scene.integrator = *integrator;
+        if !same {
+            self.luminaires = LuminaireTable::new(&self.scene);
+        }
     }
 
     /// World-space corners of a triangle of an object.

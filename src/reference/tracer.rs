@@ -18,7 +18,7 @@ impl SceneTracer for Reference {
 
     fn integrate(&mut self, integrator: &Integrator) -> Result<()> {
         integrator.check_ends()?;
-        self.scene.integrator = *integrator;
+        self.set_integrator(integrator);
         Ok(())
     }
 }

@@ -9,8 +9,10 @@
 //! | block | number 0 | number 1 | number 2 | number 3 |
 //! |---|---|---|---|---|
 //! | 0, [`SENSOR_BLOCK`] | pixel x | pixel y | lens u | lens v |
-//! | [`light_block`]`(b)` | point on the luminaire, u | point on it, v | which luminaire | texel of the environment |
+//! | [`light_block`]`(b)` | point on the luminaire, u | point on it, v | which luminaire | nothing |
 //! | [`scatter_block`]`(b)` | direction, u | direction, v | which lobe | extinction |
+//!
+//! On the environment, the point is a direction: the first number chooses the row of its image and how far down in it, the second one the column ([`Cdf`]).
 //!
 //! Whether a ray passes a surface that is partly transparent is decided by [`coverage`], for each surface on its way.
 //!
@@ -18,11 +20,13 @@
 //! and 3 another ([`sobol`]). What belongs together, such as the two numbers of a direction, is therefore such a pair.
 
 mod alias;
+mod cdf;
 mod random;
 mod sampler;
 pub mod sobol;
 
 pub use alias::AliasTable;
+pub use cdf::{CDF_NUMBERS, Cdf};
 pub use random::{random4, uniform};
 pub use sampler::Sampler;
 

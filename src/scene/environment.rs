@@ -1,6 +1,6 @@
 //! Light from where rays escape to: which direction is chosen, and with which density.
 
-use crate::sampling::AliasTable;
+use crate::sampling::Cdf;
 use glam::Vec3;
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -14,6 +14,14 @@ pub struct Environment {
     pub image: Option<Arc<EnvironmentImage>>,
     /// Degrees by which the image is turned about +y, counter-clockwise seen from above.
     pub rotation: f32,
+}
+
+impl Environment {
+    /// Whether any light comes from it.
+    pub fn emits(&self) -> bool {
+        let emits = |texel: &Vec3| *texel * self.radiance != Vec3::ZERO;
+        self.image.as_ref().map_or(self.radiance != Vec3::ZERO, |image| image.texels.iter().any(emits))
+    }
 }
 
 /// A latitude-longitude image: the upper edge is +y, the middle is -z, the right half is +x.
@@ -36,32 +44,67 @@ pub struct EnvironmentDistribution {
     pub width: u32,
     /// Rows.
     pub height: u32,
-    /// Chooses a texel, row by row from the upper left.
-    pub choice: AliasTable,
-    /// Density of each texel's directions, per steradian; within a texel they are even over the solid angle.
-    pub density: Vec<f64>,
-    /// Radiance integrated over all directions, averaged over the channels.
-    pub total: f64,
+    /// Chooses a row.
+    pub rows: Cdf,
+    /// For each row, chooses a column.
+    pub columns: Vec<Cdf>,
+    /// What of the radiance is sampled, integrated over all directions and averaged over the channels.
+    pub sampled: f64,
 }
 
+/// A sky whose radiance is off its mean by less than this (the root of the mean square, as a share of the mean) is as one of a single colour.
+const LEAST_CONTRAST: f64 = 0.1;
+
 impl EnvironmentDistribution {
-    /// The distribution of an environment; none if it is black.
-    pub fn new(environment: &Environment) -> Option<Self> {
+    /// The distribution of an environment, where paths that escape find its light too, and `left_to_them` of its mean radiance is left to them
+    /// alone: 0 is in proportion to the radiance, 1 to what is above the mean. None if it is black, or nothing above the mean is worth a ray.
+    ///
+    /// By the power heuristic whatever paths find well is found twice, so that it does not help to sample it; what they find badly is (Karlik et al.,
+    /// "MIS Compensation: Optimizing Sampling Techniques in Multiple Importance Sampling", 2019).
+    pub fn new(environment: &Environment, left_to_them: f64) -> Option<Self> {
         let (width, height) = environment.image.as_ref().map_or((1, 1), |image| (image.width, image.height));
         let factor = environment.radiance.as_dvec3();
-        let mean: Vec<f64> = match &environment.image {
+        let mut weights: Vec<f64> = match &environment.image {
             None => vec![factor.element_sum() / 3.0],
             Some(image) => smoothed(image, |texel| (texel.as_dvec3() * factor).element_sum() / 3.0),
         };
-        let solid_angle = |texel: usize| texel_solid_angle(width, height, texel as u32 / width);
-        let weights: Vec<f64> = mean.into_iter().enumerate().map(|(texel, mean)| mean * solid_angle(texel)).collect();
-        let total: f64 = weights.iter().sum();
+        // Of a function of the weights, over the directions of each row.
+        let rows = |weights: &[f64], of: &dyn Fn(f64) -> f64| -> Vec<f64> {
+            let rows = weights.chunks_exact(width as usize).zip(0..);
+            rows.map(|(row, y)| row.iter().map(|w| of(*w)).sum::<f64>() * texel_solid_angle(width, height, y)).collect()
+        };
+        let mut light = rows(&weights, &|weight| weight);
+        let total: f64 = light.iter().sum();
         if total <= 0.0 {
             return None;
         }
-        let choice = AliasTable::new(&weights);
-        let density = choice.pdf.iter().enumerate().map(|(texel, pdf)| pdf / solid_angle(texel)).collect();
-        Some(EnvironmentDistribution { width, height, choice, density, total })
+        if left_to_them > 0.0 {
+            let mean = total / (4.0 * PI);
+            let square = rows(&weights, &|weight| (weight / mean - 1.0).powi(2)).iter().sum::<f64>() / (4.0 * PI);
+            if left_to_them >= 1.0 && square < LEAST_CONTRAST.powi(2) {
+                return None;
+            }
+            weights.iter_mut().for_each(|weight| *weight = (*weight - left_to_them * mean).max(0.0));
+            light = rows(&weights, &|weight| weight);
+        }
+        let columns = weights.chunks_exact(width as usize).map(Cdf::new).collect();
+        let sampled = light.iter().sum();
+        Some(EnvironmentDistribution { width, height, rows: Cdf::new(&light), columns, sampled })
+    }
+
+    /// Column and row of the texel that two random numbers choose, and how far from its left and its upper edge they fall: the first number
+    /// goes down, the second one to the right.
+    pub fn choose(&self, [down, right]: [u32; 2]) -> ([u32; 2], [f64; 2]) {
+        let (row, v) = self.rows.choose(down);
+        let (column, u) = self.columns[row].choose(right);
+        ([column as u32, row as u32], [u, v])
+    }
+
+    /// Density of a texel's directions, per steradian: exactly that of [`EnvironmentDistribution::choose`]. Within a texel they are even over
+    /// the solid angle.
+    pub fn density(&self, [column, row]: [u32; 2]) -> f64 {
+        let probability = self.rows.probability(row as usize) * self.columns[row as usize].probability(column as usize);
+        probability / texel_solid_angle(self.width, self.height, row)
     }
 }
 

@@ -1,6 +1,7 @@
 //! Every luminaire of a scene in one table, one of which is chosen by its power.
 
 use super::environment::EnvironmentDistribution;
+use super::estimator::{Directions, Estimator, Extinction, Integrator, LightSampling};
 use super::luminaire::Luminaire;
 use super::material::Material;
 use super::mesh::{outward, widen};
@@ -87,7 +88,9 @@ impl LuminaireTable {
         }
         let (low, high) = scene.model_bounds();
         let (center, radius) = (0.5 * (low + high), 0.5 * (high - low).length());
-        let environment = scene.environment.as_ref().and_then(EnvironmentDistribution::new);
+        let left_to_paths = left_to_paths(scene, &scene.integrator);
+        let environment =
+            scene.environment.as_ref().and_then(|environment| EnvironmentDistribution::new(environment, left_to_paths));
         entries.extend(environment.as_ref().map(|_| SampledLuminaire::Environment));
         let exitance: Vec<f64> = scene.materials.iter().map(|material| exitance(scene, material)).collect();
         let powers: Vec<f64> = entries
@@ -96,7 +99,7 @@ impl LuminaireTable {
                 SampledLuminaire::Impulse(luminaire) => impulse_power(luminaire, center, radius),
                 SampledLuminaire::Area(triangle) => exitance[triangle.material as usize] * triangle.area(),
                 SampledLuminaire::Environment => {
-                    PI * radius * radius * environment.as_ref().map_or(0.0, |environment| environment.total)
+                    PI * radius * radius * environment.as_ref().map_or(0.0, |environment| environment.sampled)
                 }
             })
             .collect();
@@ -114,6 +117,11 @@ impl LuminaireTable {
         LuminaireTable { choice: AliasTable::new(&powers), entries, environment, area_density, least_probability }
     }
 
+    /// Whether the table of a scene would be the same with another integrator: with a sky it depends on what else finds its light.
+    pub fn is_same_for(scene: &Scene, integrator: &Integrator) -> bool {
+        scene.environment.is_none() || left_to_paths(scene, &scene.integrator) == left_to_paths(scene, integrator)
+    }
+
     /// The probability of choosing an emissive triangle of this material and area, as it was asked for. With 32 random bits the table comes
     /// only near ([`AliasTable::pdf`]), the less so the smaller it is. What is divided by is what the table does; the power heuristic, whose
     /// weights have to add up to 1 wherever the light is found, goes by this.
@@ -125,6 +133,24 @@ impl LuminaireTable {
     pub fn environment_probability(&self) -> f64 {
         // The last entry.
         if self.environment.is_some() { self.choice.pdf.last().copied().unwrap_or(0.0) } else { 0.0 }
+    }
+}
+
+/// How much of a sky's mean radiance is left to paths that escape. Where they go by the BSDF, and nothing but Russian roulette by the whole path
+/// ends them, they find an even sky better than light sampling does. The lobes of a surface share its paths, so that a weak one has few: there half
+/// of the mean is sampled.
+fn left_to_paths(scene: &Scene, integrator: &Integrator) -> f64 {
+    let Estimator { light_sampling, directions, extinction, albedo_threshold, .. } = integrator.estimator();
+    let found = light_sampling == LightSampling::Mis
+        && directions == Directions::Bsdf
+        && matches!(extinction, Extinction::Off | Extinction::Throughput)
+        && albedo_threshold.is_none();
+    let lobes = |m: &Material| [m.lambert != Vec3::ZERO, m.glossy != Vec3::ZERO, m.has_impulse()];
+    let several = |m: &Material| lobes(m).into_iter().filter(|has| *has).count() > 1;
+    match found {
+        false => 0.0,
+        true if scene.materials.iter().any(several) => 0.5,
+        true => 1.0,
     }
 }
 

@@ -1,5 +1,6 @@
 //! The estimators against each other and against closed forms, on the kernel's own output.
 
+use super::pictures::pixels;
 use super::*;
 use crate::common::scenes::*;
 use crate::common::statistics::*;
@@ -54,6 +55,92 @@ fn every_unbiased_estimator_has_one_mean() {
         assert!(found.error < 3e-2 * found.mean, "{estimator:?}: not sharp");
     }
     assert_eq!(validation_messages(), 0);
+}
+
+/// Under skies of which all, a part, or nothing is sampled: of one colour, alone and beside a lamp; with a sun. Dark and glossy boxes, in a room with
+/// one wall, or seen through a window. Every choice that is unbiased has the mean of the one that samples all of the sky.
+#[test]
+fn under_a_sky_every_estimator_has_one_mean() {
+    if on_the_old_driver() {
+        return;
+    }
+    let direct = Estimator { light_sampling: LightSampling::Direct, ..Estimator::default() };
+    let others = [
+        Estimator::default(),
+        Estimator { directions: Directions::Cosine, ..Estimator::default() },
+        Estimator { extinction: Extinction::Surface, ..Estimator::default() },
+        Estimator { light_sampling: LightSampling::None, ..direct },
+    ];
+    let Some(backend) = backends().into_iter().next() else { return };
+    for (name, lamp_emission, one_colour) in [
+        ("one colour", 0.0, true),
+        ("one colour and a lamp", 20.0, true),
+        ("sun", 0.0, false),
+        ("sun and a lamp", 20.0, false),
+    ] {
+        let mut scene = open_air(32, 32);
+        scene.film.filter_radius = 0.5;
+        scene.film.filter = luminaire::scene::Filter::Box;
+        let sky = scene.environment.as_mut().expect("a sky");
+        if one_colour {
+            sky.image = None;
+        } else {
+            // A sun that is found by chance often enough for a sharp mean.
+            let mut image = luminaire::scene::EnvironmentImage::clone(sky.image.as_ref().expect("an image"));
+            image.texels.iter_mut().for_each(|texel| *texel = texel.min(Vec3::splat(8.0)));
+            sky.image = Some(image.into());
+        }
+        if lamp_emission > 0.0 {
+            let panel = quad(Vec3::new(-1.0, -0.75, -1.75), Vec3::X * 0.75, Vec3::Y * 0.75);
+            let glow = Material { emission: Vec3::splat(lamp_emission), ..matte(Vec3::splat(0.3)) };
+            add(&mut scene, panel, glow, Affine3A::IDENTITY);
+        }
+        scene.integrator = Integrator::Path(direct);
+        let reference = measure(&backend, &scene);
+        for (index, estimator) in others.into_iter().enumerate() {
+            scene.integrator = Integrator::Path(estimator);
+            scene.settings.seed = index as u32 + 1;
+            let found = measure(&backend, &scene);
+            let z = (found.mean - reference.mean) / found.error.hypot(reference.error);
+            println!(
+                "{name}, {estimator:?}: {} +- {} for {} +- {}, z = {z:.2}",
+                found.mean, found.error, reference.mean, reference.error
+            );
+            assert!(
+                sidak(two_sided(z), 16) >= SIGNIFICANCE,
+                "{name}, {estimator:?}: {found:?} and {reference:?}, z = {z:.2}"
+            );
+            assert!(found.error < 3e-3 * found.mean, "{name}, {estimator:?}: not sharp");
+        }
+    }
+    assert_eq!(validation_messages(), 0);
+}
+
+/// A tracer that takes another integrator is as one that was opened with it, also where the sky is sampled otherwise then, or no more: bit for bit,
+/// on every backend and in the reference.
+#[test]
+fn another_integrator_samples_the_sky_otherwise() {
+    for one_colour in [false, true] {
+        let mut scene = open_air(16, 16);
+        if one_colour {
+            scene.environment.as_mut().expect("a sky").image = None;
+        }
+        let lamp_on_the_floor = quad(Vec3::new(-1.0, -0.75, -1.75), Vec3::X * 0.75, Vec3::Y * 0.75);
+        add(&mut scene, lamp_on_the_floor, lamp(Vec3::ONE), Affine3A::IDENTITY);
+        let choices = [LightSampling::Mis, LightSampling::Direct, LightSampling::None, LightSampling::Mis];
+        let with = |light_sampling| Integrator::Path(Estimator { light_sampling, ..Estimator::default() });
+        let scenes = choices.map(|choice| Scene { integrator: with(choice), ..scene.clone() });
+        let check = |open: &dyn Fn(&Scene) -> Box<dyn luminaire::render::SceneTracer>, name: &str| {
+            let mut changed = open(&scenes[0]);
+            for scene in &scenes {
+                changed.integrate(&scene.integrator).expect("it ends");
+                let (found, expected) = (pixels(&mut *changed, scene, 4), pixels(&mut *open(scene), scene, 4));
+                assert!(found == expected, "{name}, {:?}", scene.integrator);
+            }
+        };
+        check(&|scene| Box::new(luminaire::reference::Reference::new(scene)), "reference");
+        on_every_backend(|backend| check(&|scene| Box::new(backend.tracer(scene)), backend.name()));
+    }
 }
 
 /// A closed shell of albedo `a` that emits 1. By chance alone (no light sampling) extinction without re-weighting gives `1 / (1 - a^2)`;

@@ -10,7 +10,7 @@ use glam::{Affine2, Affine3A, DVec2, DVec3, Vec2, Vec3};
 use luminaire::gpu::probe::{Call, Function, Probe};
 use luminaire::reference::{Reference, texture::bilinear};
 use luminaire::sampling::{random4, uniform};
-use luminaire::scene::Texture;
+use luminaire::scene::{Environment, EnvironmentDistribution, EnvironmentImage, LightSampling, Texture};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 
@@ -195,28 +195,78 @@ fn sampled_directions(probe: &Probe, reference: &Reference) {
     let expected: Vec<f64> =
         shares_of_sky(|w| reference.environment_density(w)).into_iter().map(|share| share * f64::from(N)).collect();
     let random: Vec<[u32; 4]> = (0..N).map(|i| random4(i, 0, 1, 23)).collect();
-    let unit = |number: u32| (uniform(number) as f32).to_bits();
-    let calls: Vec<Call> = random.iter().map(|r| [[r[3], unit(r[0]), unit(r[1]), 0], [0; 4]]).collect();
-    let sampled = probe.call(Function::SampleEnvironment, &calls).expect("the probe runs");
-    let back: Vec<Call> = sampled.iter().map(|result| [result[0], [0; 4]]).collect();
+    let sampled = assert_directions_are_the_twin_s(probe, reference, &random);
+    let back: Vec<Call> = sampled.iter().map(|result| [*result, [0; 4]]).collect();
     let looked_up = probe.call(Function::EnvironmentAt, &back).expect("the probe runs");
     let mut counts = vec![0; expected.len()];
     let mut edges = 0;
-    for ((random, sampled), looked_up) in random.iter().zip(sampled).zip(looked_up) {
-        let w = vector(sampled[0]);
+    for (sampled, looked_up) in sampled.into_iter().zip(looked_up) {
+        let w = vector(sampled);
         counts[part_of_sky(w)] += 1;
-        let twin = reference.sample_environment(*random).expect("not black");
-        // Where the sine is the root of a small difference, it is known to half its digits.
-        let tolerance = 1e-6 + 2e-7 / twin.x.hypot(twin.z).max(5e-4);
-        assert!((w - twin).length() <= tolerance, "{random:?}: {w} {twin}");
         if on_an_edge(w) {
             edges += 1;
         } else {
-            assert_eq!(sampled[0][3], looked_up[0][3], "{w}: the same bits");
+            assert_eq!(sampled[3], looked_up[0][3], "{w}: the same bits");
         }
     }
     assert!(edges < N / 1000, "{edges} on edges");
     let p = chi_square_against(&counts, &expected);
     println!("environment: p = {p:.3}");
     assert!(p >= SIGNIFICANCE, "p = {p:e}");
+}
+
+/// The same numbers choose the same texel, to the last one of them, with the same density, and the same direction up to rounding.
+fn assert_directions_are_the_twin_s(probe: &Probe, reference: &Reference, random: &[[u32; 4]]) -> Vec<[u32; 4]> {
+    let calls: Vec<Call> = random.iter().map(|r| [[r[0], r[1], 0, 0], [0; 4]]).collect();
+    let sampled = probe.call(Function::SampleEnvironment, &calls).expect("the probe runs");
+    for (random, sampled) in random.iter().zip(&sampled) {
+        let (w, [.., density]) = (vector(sampled[0]), floats(sampled[0]));
+        let (twin, expected) = reference.sample_environment([random[0], random[1]]).expect("not black");
+        assert_eq!(density as f32, expected as f32, "{random:?}: {w} {twin}");
+        // Where the sine is the root of a small difference, it is known to half its digits.
+        let tolerance = 1e-6 + 2e-7 / twin.x.hypot(twin.z).max(5e-4);
+        assert!((w - twin).length() <= tolerance, "{random:?}: {w} {twin}");
+    }
+    sampled.into_iter().map(|result| result[0]).collect()
+}
+
+/// Skies of one texel, of one row or column, of sizes around the powers of four in which the kernel searches, black rows among them, and a small
+/// sun in four million texels: the same texels as the reference's.
+#[test]
+fn skies_of_all_sizes() {
+    let sizes = [[1, 1], [1, 5], [17, 1], [4, 16], [5, 64], [67, 3], [4097, 1024]];
+    let skies = sizes.map(|[width, height]| {
+        let texel = |i: u32| {
+            let [grey, black, ..] = random4(i, i / width, 0, width).map(|r| uniform(r) as f32);
+            if width > 3 && (black < 0.2 || (i / width).is_multiple_of(5)) { Vec3::ZERO } else { Vec3::splat(grey) }
+        };
+        let mut texels: Vec<Vec3> = (0..width * height).map(texel).collect();
+        texels[(width * height / 3) as usize] = Vec3::splat(0.5 * (width * height) as f32);
+        EnvironmentImage { name: "sky".into(), width, height, texels }
+    });
+    on_every_backend(|backend| {
+        for sky in &skies {
+            let (width, height) = (sky.width, sky.height);
+            let mut scene = empty(4, 4);
+            add(&mut scene, quad(-Vec3::ONE, Vec3::X, Vec3::Z), matte(Vec3::ONE), Affine3A::IDENTITY);
+            estimator(&mut scene).light_sampling = LightSampling::Direct;
+            scene.environment =
+                Some(Environment { radiance: Vec3::ONE, image: Some(sky.clone().into()), rotation: 0.0 });
+            let probe = Probe::new(&backend.device, &scene, backend.ray_query).expect("a probe");
+            let mut random: Vec<[u32; 4]> = (0..4000).map(|i| random4(i, 0, 1, 23)).collect();
+            // The first and the last number of rows and columns.
+            let distribution = EnvironmentDistribution::new(scene.environment.as_ref().expect("a sky"), 0.0);
+            let distribution = distribution.expect("not black");
+            for cdf in [&distribution.rows, &distribution.columns[height as usize / 3]] {
+                let some = cdf.starts.iter().step_by(1 + cdf.starts.len() / 100);
+                let numbers = some.flat_map(|start| [2 * u64::from(*start), (2 * u64::from(*start)).saturating_sub(1)]);
+                let sun = 2 * distribution.rows.starts[height as usize / 3];
+                random.extend(
+                    numbers.filter(|n| *n < 1 << 32).flat_map(|n| [[n as u32, 77, 0, 0], [sun, n as u32, 0, 0]]),
+                );
+            }
+            assert_directions_are_the_twin_s(&probe, &Reference::new(&scene), &random);
+            println!("{width} x {height}, {}", backend.name());
+        }
+    });
 }

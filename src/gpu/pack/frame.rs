@@ -1,5 +1,6 @@
 //! Sensor and estimator, as the kernel has them.
 
+use super::environment::search_tree_size;
 use crate::gpu::layout;
 use crate::scene::{FilmSettings, Integrator, LuminaireTable, Projection, Scene, Sensor};
 use bytemuck::Zeroable;
@@ -8,21 +9,29 @@ use glam::{DVec3, Vec3};
 /// Sensor, film, integrator and environment of a scene.
 pub(in crate::gpu) fn frame(scene: &Scene, table: &LuminaireTable) -> layout::Frame {
     let (radiance, rotation) = scene.environment.as_ref().map_or((Vec3::ZERO, 0.0), |e| (e.radiance, e.rotation));
-    let (environment_width, environment_height) = table.environment.as_ref().map_or((1, 1), |e| (e.width, e.height));
+    let image = scene.environment.as_ref().and_then(|environment| environment.image.as_ref());
+    let (environment_width, environment_height) = image.map_or((1, 1), |image| (image.width, image.height));
     let mut frame = layout::Frame {
         environment: radiance.to_array(),
-        environment_probability: table.environment_probability() as f32,
         seed: scene.settings.seed,
-        luminaire_count: table.entries.len() as u32,
         environment_width,
         environment_height,
         environment_rotation: turns(rotation),
-        least_probability: table.least_probability as f32,
+        environment_rows: search_tree_size(environment_height),
+        environment_row: search_tree_size(environment_width),
         ..Zeroable::zeroed()
     };
+    light(&mut frame, table);
     aim(&mut frame, &scene.sensor, &scene.film, scene.world_bounds());
     estimate(&mut frame, &scene.integrator);
     frame
+}
+
+/// Puts what is known of the luminaires as a whole into a frame.
+pub(in crate::gpu) fn light(frame: &mut layout::Frame, table: &LuminaireTable) {
+    frame.luminaire_count = table.entries.len() as u32;
+    frame.environment_probability = table.environment_probability() as f32;
+    frame.least_probability = table.least_probability as f32;
 }
 
 /// Puts the integrator's numbers into a frame.

@@ -1,5 +1,6 @@
 //! The scene's plain data in the form of [`super::layout`].
 
+pub(super) mod environment;
 pub(super) mod frame;
 pub mod luminaire;
 pub(super) mod material;

@@ -1,9 +1,9 @@
-//! Textures and the environment, as the kernel has them.
+//! Textures, as the kernel has them.
 
 use crate::gpu::layout;
-use crate::scene::{Environment, EnvironmentDistribution, Texture};
+use crate::scene::Texture;
 use bytemuck::Zeroable;
-use glam::{Affine2, Vec3};
+use glam::Affine2;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
@@ -40,20 +40,6 @@ pub(in crate::gpu) fn texel_count(textures: &[Arc<Texture>]) -> u64 {
     let mut seen = HashSet::new();
     let own = textures.iter().filter(|texture| seen.insert(Arc::as_ptr(&texture.texels)));
     own.map(|texture| texture.texels.len() as u64).sum()
-}
-
-/// The environment's texels with their densities, and its alias table, two slots in one texel.
-pub(in crate::gpu) fn environment(
-    environment: &Environment,
-    distribution: &EnvironmentDistribution,
-) -> (Vec<layout::EnvironmentTexel>, Vec<[u32; 4]>) {
-    let radiance = |texel: usize| environment.image.as_ref().map_or(Vec3::ONE, |image| image.texels[texel]);
-    let texel = |(index, density): (usize, &f64)| layout::EnvironmentTexel {
-        radiance: radiance(index).to_array(),
-        density: *density as f32,
-    };
-    let texels = distribution.density.iter().enumerate().map(texel).collect();
-    (texels, pairs(distribution.choice.slots.iter().map(|(threshold, alias)| [*threshold, *alias]).collect()))
 }
 
 /// Two in one, the last filled up with zeros.

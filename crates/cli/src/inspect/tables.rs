@@ -1,7 +1,7 @@
 //! The tables of `luminaire inspect`.
 
 use luminaire::glam::{Affine2, DVec3, Vec2, Vec3};
-use luminaire::scene::{Luminaire, LuminaireTable, Material, Mesh, SampledLuminaire, Scene};
+use luminaire::scene::{Environment, Luminaire, LuminaireTable, Material, Mesh, SampledLuminaire, Scene};
 
 /// Meshes and what they have.
 pub(super) fn meshes(scene: &Scene) -> Vec<Vec<String>> {
@@ -166,6 +166,10 @@ pub(super) fn luminaires(scene: &Scene) -> Vec<Vec<String>> {
     if triangles > 0 {
         let what = format!("{triangles} emissive triangles");
         rows.push(vec!["area".into(), what, format!("total area {area:.4}"), percent(chance)]);
+    }
+    if table.environment.is_none() && scene.environment.as_ref().is_some_and(Environment::emits) {
+        let why = "even: not chosen, paths that escape find it".into();
+        rows.push(vec!["environment".into(), String::new(), String::new(), why]);
     }
     if rows.is_empty() {
         rows.push(vec!["none: nothing in this scene emits".into()]);
