@@ -4,6 +4,7 @@ use super::accel::Geometry;
 use super::layout;
 use super::memory_check::Budget;
 use super::pack::frame::{aim, estimate, frame};
+use super::pack::light_tree::light_tree;
 use super::pack::luminaire::luminaires;
 use super::pack::material::material;
 use super::pack::texture::{environment, textures};
@@ -13,13 +14,13 @@ use super::vulkan::buffer::Buffer;
 use super::vulkan::device::Device;
 use super::vulkan::texel_buffer::TexelBuffer;
 use crate::Result;
-use crate::scene::{FilmSettings, Integrator, LuminaireTable, Scene, Sensor};
+use crate::scene::{FilmSettings, Integrator, LightChoice, LuminaireTable, Scene, Sensor};
 use ash::vk;
 use bytemuck::Pod;
 use glam::DVec3;
 use std::sync::Arc;
 
-/// Bindings 0 to 6 and 9 to 14.
+/// Bindings 0 to 6 and 9 to 15.
 pub(super) struct GpuScene {
     frame: Buffer,
     /// What `frame` holds.
@@ -31,6 +32,8 @@ pub(super) struct GpuScene {
     texels: TexelBuffer,
     environment_texels: TexelBuffer,
     environment_slots: TexelBuffer,
+    light_tree: TexelBuffer,
+    has_light_tree: bool,
     /// The scene's [`Scene::world_bounds`].
     bounds: (DVec3, DVec3),
     pub(super) model: KernelModel,
@@ -47,8 +50,8 @@ impl GpuScene {
         let table = LuminaireTable::new(scene);
         let mut model = KernelModel::with(scene, &table);
         adjust(&mut model);
-        Budget::of(scene, ray_query, &model).check(device)?;
-        let (geometry, places) = Geometry::build(device, scene, ray_query, &model)?;
+        Budget::of(scene, &table, ray_query, &model).check(device)?;
+        let (geometry, places) = Geometry::build(device, scene, ray_query, &model, table.tree.as_ref())?;
         let materials: Vec<_> = (0..scene.materials.len()).map(|i| material(scene, &table, i)).collect();
         let luminaires = luminaires(scene, &table, &places);
         let (textures, texels) = if model.features.textures || model.features.holes {
@@ -60,6 +63,7 @@ impl GpuScene {
             (Some(sky), Some(distribution)) => environment(sky, distribution),
             _ => Default::default(),
         };
+        let tree = table.tree.as_ref().map(light_tree).unwrap_or_default();
         let frame_data = frame(scene, &table);
         Ok(GpuScene {
             frame: Buffer::upload(device, "frame", &[frame_data], vk::BufferUsageFlags::UNIFORM_BUFFER)?,
@@ -71,6 +75,8 @@ impl GpuScene {
             texels: texel_buffer(device, "texels", &texels)?,
             environment_texels: texel_buffer(device, "environment", &environment_texels)?,
             environment_slots: texel_buffer(device, "environment choice", &environment_slots)?,
+            light_tree: texel_buffer(device, "light tree", &tree)?,
+            has_light_tree: table.tree.is_some(),
             bounds: scene.world_bounds(),
             model,
         })
@@ -85,11 +91,14 @@ impl GpuScene {
     /// Puts another integrator in the place of the present one; the kernel has to be made again, with the constants of `model`.
     pub(super) fn integrate(&mut self, integrator: &Integrator) -> Result<()> {
         self.model.integrator = *integrator;
+        // One that was not made with the scene is not made now.
+        self.model.features.light_tree =
+            self.has_light_tree && integrator.estimator().light_choice != LightChoice::Power;
         estimate(&mut self.frame_data, integrator);
         self.frame.write(&[self.frame_data])
     }
 
-    /// Bindings 0 to 14, of which 7 and 8 are the caller's.
+    /// Bindings 0 to 15, of which 7 and 8 are the caller's.
     pub(super) fn bindings<'a>(&'a self, seven: &'a Buffer, eight: &'a Buffer) -> Vec<Binding<'a>> {
         let [intersector, triangles, normals, objects, uvs, colours] = self.geometry.bindings();
         vec![
@@ -108,6 +117,7 @@ impl GpuScene {
             Binding::Texel(&self.environment_texels),
             Binding::Texel(&self.environment_slots),
             colours,
+            Binding::Texel(&self.light_tree),
         ]
     }
 }

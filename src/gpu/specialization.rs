@@ -66,6 +66,8 @@ features! {
     coats: "coats",
     /// Some map is moved or scaled.
     map_transforms: "map transforms",
+    /// Luminaires are chosen by a tree over them.
+    light_tree: "light tree",
 }
 
 /// The kernel that runs: the scene's features, and the choices of its integrator.
@@ -112,6 +114,7 @@ impl KernelModel {
             vertex_colours: scene.meshes.iter().any(|m| !m.colours.is_empty()),
             coats: material(Material::is_coated),
             map_transforms: scene.textures.iter().any(|texture| texture.transform != Affine2::IDENTITY),
+            light_tree: table.tree.is_some(),
         };
         KernelModel {
             features,

@@ -4,6 +4,7 @@ use super::hit::Hit;
 use super::luminaire::emission_weight;
 use super::prepared_scene::Reference;
 use super::scatter::{SURE_THROUGHPUT, scatter, survival};
+use super::surfel::Surfel;
 use crate::film::Rays;
 use crate::sampling::{light_block, ray_salt, scatter_block, uniform};
 use crate::scene::{Extinction, Integrator, LightSampling};
@@ -72,8 +73,8 @@ impl Reference {
         let mut eta_scale = 1.0;
         // Throughput without eta^2 and without extinction: the slides' `combinedAlbedo`.
         let mut combined_albedo = DVec3::ONE;
-        // Where the ray comes from, and the density with which the path went there; none for the camera and impulses.
-        let mut from = DVec3::ZERO;
+        // The surface that the ray comes from, and the density with which the path went there; none for the camera and impulses.
+        let mut from: Option<Surfel> = None;
         let mut pdf = None;
         let mut rays = Rays::default();
         for bounce in 0.. {
@@ -90,7 +91,8 @@ impl Reference {
             let wo = -direction;
             let surfel = self.surfel(&hit, wo);
             if surfel.emission != DVec3::ZERO {
-                let weight = emission_weight(estimator.light_sampling, pdf, self.luminaire_pdf(from, &surfel));
+                let light_pdf = from.filter(|_| pdf.is_some()).map_or(0.0, |from| self.luminaire_pdf(&from, &surfel));
+                let weight = emission_weight(estimator.light_sampling, pdf, light_pdf);
                 radiance += throughput * weight * surfel.emission;
             }
             if estimator.max_bounces.is_some_and(|max| bounce > max) {
@@ -156,7 +158,7 @@ impl Reference {
                 reweighted = alive;
                 throughput /= alive;
             }
-            from = surfel.position;
+            from = Some(surfel);
             pdf = scattered.pdf.map(|pdf| pdf * reweighted);
             origin = surfel.offset_ray_origin(scattered.wi);
             direction = scattered.wi;

@@ -11,6 +11,7 @@ mod environment;
 mod estimator;
 mod filter;
 mod first_view;
+pub mod light_tree;
 mod load;
 mod luminaire;
 mod luminaire_table;
@@ -20,6 +21,7 @@ mod overlap;
 pub(crate) mod rounding;
 mod sensor;
 mod settings;
+mod several_lamps;
 mod studio_sky;
 mod texture;
 mod world;
@@ -29,10 +31,11 @@ pub use crate::sampling::Sampler;
 pub use coat::coat_transmittance;
 pub use environment::{Environment, EnvironmentDistribution, EnvironmentImage};
 pub use estimator::{
-    AreaSampling, Directions, Estimator, EstimatorChanges, Extinction, Integrator, LightSampling, PRESETS,
+    AreaSampling, Directions, Estimator, EstimatorChanges, Extinction, Integrator, LightChoice, LightSampling, PRESETS,
 };
 pub use filter::Filter;
 pub use first_view::{FirstView, Side};
+pub use light_tree::LightTree;
 pub use load::{Choices, SceneFile, Sky, Up, load, load_with, scene_file, use_camera};
 pub use luminaire::Luminaire;
 pub use luminaire_table::{EmissiveTriangle, LuminaireTable, SampledLuminaire};

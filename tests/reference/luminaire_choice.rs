@@ -65,7 +65,7 @@ fn both_strategies_have_one_density() {
         else {
             continue;
         };
-        let by_chance = tracer.luminaire_pdf(floor.position, &tracer.surfel(&met, -wi));
+        let by_chance = tracer.luminaire_pdf(&floor, &tracer.surfel(&met, -wi));
         assert!((density / by_chance - 1.0).abs() < 1e-6, "lamp {}: {density} and {by_chance}", met.triangle);
         seen[met.triangle as usize % 8] += 1;
     }

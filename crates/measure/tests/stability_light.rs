@@ -143,14 +143,15 @@ fn densities_of_several_lamps() {
     let table = LuminaireTable::new(&scene);
     let tracer = Reference::new(&scene);
     let below = tracer.closest_hit(DVec3::Y * 0.1, -DVec3::Y, f64::INFINITY, 0).expect("the floor");
-    let from = tracer.surfel(&below, DVec3::Y).position;
+    let floor = tracer.surfel(&below, DVec3::Y);
+    let from = floor.position;
     const N: u32 = 200_000;
     let found: Vec<Option<(u32, f64)>> = (0..N)
         .map(|i| {
             let [u, v, ..] = random4(i, 0, 0, 7).map(uniform);
             let wi = uniform_hemisphere(DVec3::Y, u, v);
             let hit = tracer.closest_hit(from + 1e-9 * DVec3::Y, wi, f64::INFINITY, 0)?;
-            Some((hit.object, TAU * tracer.luminaire_pdf(from, &tracer.surfel(&hit, -wi))))
+            Some((hit.object, TAU * tracer.luminaire_pdf(&floor, &tracer.surfel(&hit, -wi))))
         })
         .collect();
     for object in 1..=3 {

@@ -1,6 +1,7 @@
 //! The scene's plain data in the form of [`super::layout`].
 
 pub(super) mod frame;
+pub(super) mod light_tree;
 pub mod luminaire;
 pub(super) mod material;
 pub(super) mod texture;
