@@ -9,6 +9,8 @@ const float MOST_SINE = 2.0;
 const float LEAST_IMPORTANCE = 1e-24;
 // A squared distance is at least this.
 const float LEAST_DISTANCE2 = 1e-37;
+// What the inner side of a closed lamp counts, which is seen from within it alone.
+const float INNER_SIDE = 0.03125;
 // Fewer numbers than these get further bits.
 const uint LEAST_WIDTH = 0x01000000u;
 // The largest fraction of 2^32 that is also a float.
@@ -47,7 +49,10 @@ vec4 light_importances(vec3 p, vec3 n, uint node) {
     vec4 cosine = along * inverse * (-1.0 / 32767.0);
     vec4 spread = vec4(axis_z_spread >> 16) * (1.0 / 32767.0);
     cosine = mix(cosine, abs(cosine), lessThan(spread, vec4(0.0)));
-    vec4 emitted = mix(facing(cosine, sine + abs(spread)), vec4(1.0), greaterThanEqual(axis_z_spread >> 16, ivec4(32767)));
+    spread = sine + abs(spread);
+    vec4 inner = mix(vec4(0.0), INNER_SIDE * facing(-cosine, spread), lessThan(strength, vec4(0.0)));
+    strength = abs(strength);
+    vec4 emitted = mix(max(facing(cosine, spread), inner), vec4(1.0), greaterThanEqual(axis_z_spread >> 16, ivec4(32767)));
     vec4 importance = max(strength * (nearest / near) * incident * emitted, LEAST_IMPORTANCE);
     bvec4 none = lessThanEqual(min(min(incident, emitted), strength), vec4(0.0));
     return mix(importance, vec4(0.0), none);

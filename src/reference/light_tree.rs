@@ -17,6 +17,8 @@ pub const MOST_SINE: f64 = 2.0;
 pub const LEAST_IMPORTANCE: f64 = 1e-24;
 /// A squared distance is at least this.
 pub const LEAST_DISTANCE2: f64 = 1e-37;
+/// What the inner side of a closed lamp counts, which is seen from within it alone.
+pub const INNER_SIDE: f64 = 1.0 / 32.0;
 /// Fewer numbers than these get further bits.
 pub const LEAST_WIDTH: u32 = 1 << 24;
 /// The largest fraction of 2^32 that is also an `f32`.
@@ -82,7 +84,9 @@ pub fn light_importances(position: DVec3, normal: DVec3, node: &LightNode) -> [f
         if child.spread.two_sided {
             cosine = cosine.abs();
         }
-        let emitted = if child.spread.sine >= 1.0 { 1.0 } else { facing(cosine, sine + child.spread.sine) };
+        let spread = sine + child.spread.sine;
+        let inner = if child.closed { INNER_SIDE * facing(-cosine, spread) } else { 0.0 };
+        let emitted = if child.spread.sine >= 1.0 { 1.0 } else { facing(cosine, spread).max(inner) };
         if child.strength == 0.0 || incident == 0.0 || emitted == 0.0 {
             return 0.0;
         }

@@ -2,11 +2,11 @@
 
 use super::environment::EnvironmentDistribution;
 use super::estimator::{LightChoice, LightSampling};
+use super::lamp_shapes::lamp_shapes;
 use super::light_tree::{LightTree, Source};
 use super::luminaire::Luminaire;
 use super::material::Material;
 use super::mesh::{outward, widen};
-use super::several_lamps::several_lamps;
 use super::world::Scene;
 use crate::sampling::AliasTable;
 use glam::{DVec3, Vec3};
@@ -167,8 +167,14 @@ fn light_tree(scene: &Scene, entries: &[SampledLuminaire], powers: &[f64]) -> Op
         if !(*own_power > 0.0) {
             continue;
         }
-        let source =
-            |corners, normal, two_sided, strength| Source { entry: index, corners, normal, two_sided, strength };
+        let source = |corners, normal, two_sided, strength| Source {
+            entry: index,
+            corners,
+            normal,
+            two_sided,
+            closed: false,
+            strength,
+        };
         match entry {
             SampledLuminaire::Impulse(Luminaire::Point { position, intensity }) => {
                 sources.push(source([*position; 3], DVec3::ZERO, false, mean(*intensity)));
@@ -190,13 +196,13 @@ fn light_tree(scene: &Scene, entries: &[SampledLuminaire], powers: &[f64]) -> Op
         place.push(own_place);
         index += 1;
     }
-    if sources.is_empty() || (estimator.light_choice == LightChoice::Auto && !several_lamps(&sources)) {
+    if sources.is_empty() || (lamp_shapes(&mut sources) == 1 && estimator.light_choice == LightChoice::Auto) {
         return None;
     }
     let environment = matches!(entries.last(), Some(SampledLuminaire::Environment));
     let environment = environment && powers.last().is_some_and(|power| *power > 0.0);
     let least = least_share(outer_powers.len()) * outer_powers.iter().sum::<f64>();
-    outer_powers.iter_mut().for_each(|power| *power = power.max(least));
+    outer_powers.iter_mut().for_each(|weight| *weight = weight.max(least));
     let place = |entry: u32| place[entry as usize];
     Some(LightTree::new(scene, sources, place, emissive as usize, &outer, &outer_powers, environment))
 }

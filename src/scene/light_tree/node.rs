@@ -19,7 +19,8 @@ pub struct LightNode {
     pub z: [f32; CHILDREN],
     /// Its radius.
     pub radius: [f32; CHILDREN],
-    /// Intensity towards where most goes, over the largest of the four; 0: there is no such child.
+    /// Intensity towards where most goes, over the largest of the four, negative where the light of inner sides counts less
+    /// ([`Child::closed`]); 0: there is no such child.
     pub strength: [f32; CHILDREN],
     /// The axis of the normals' cone, x and y in 16 bits each.
     pub axis_xy: [u32; CHILDREN],
@@ -51,6 +52,8 @@ pub struct Child {
     pub axis: DVec3,
     /// Around it.
     pub spread: Spread,
+    /// Some of it are sides of closed lamps.
+    pub closed: bool,
 }
 
 /// What is added to the sine of a cone's angle: 16 bits of an axis round by 3e-5, and so do the tracers' cosines.
@@ -83,7 +86,7 @@ impl LightNode {
         self.y[number] = child.center.y;
         self.z[number] = child.center.z;
         self.radius[number] = child.radius;
-        self.strength[number] = child.strength;
+        self.strength[number] = if child.closed { -child.strength } else { child.strength };
         self.axis_xy[number] = snorm(child.axis.x) | snorm(child.axis.y) << 16;
         self.axis_z_spread[number] = snorm(child.axis.z) | snorm(if two_sided { -sine } else { sine }) << 16;
         self.link[number] = link;
@@ -96,9 +99,10 @@ impl LightNode {
         Child {
             center: Vec3::new(self.x[number], self.y[number], self.z[number]),
             radius: self.radius[number],
-            strength: self.strength[number],
+            strength: self.strength[number].abs(),
             axis: DVec3::new(from_snorm(xy), from_snorm(xy >> 16), from_snorm(z_spread)),
             spread: Spread { sine: spread.abs(), two_sided: spread < 0.0 },
+            closed: self.strength[number] < 0.0,
         }
     }
 }
@@ -112,7 +116,7 @@ pub(super) fn strength(group: &[Source]) -> f64 {
 pub(super) fn axis_sum(group: &[Source]) -> DVec3 {
     group.iter().fold(DVec3::ZERO, |sum, source| {
         let normal = source.strength * source.normal;
-        if source.two_sided && normal.dot(sum) < 0.0 { sum - normal } else { sum + normal }
+        if source.turns() && normal.dot(sum) < 0.0 { sum - normal } else { sum + normal }
     })
 }
 
@@ -125,17 +129,17 @@ pub(super) fn child(group: &[Source], strongest: f64) -> Child {
     let radius = corners().map(|corner| corner.as_dvec3().distance_squared(from_center)).fold(0.0, f64::max).sqrt();
     let radius = (radius * (1.0 + RADIUS_MARGIN)) as f32;
 
-    let two_sided = group.iter().any(|source| source.two_sided);
+    let two_sided = group.iter().any(Source::turns);
     let axis = axis_sum(group).normalize_or_zero();
     let cosine = |source: &Source| {
         let cosine = axis.dot(source.normal);
-        if source.two_sided { cosine.abs() } else { cosine }
+        if source.turns() { cosine.abs() } else { cosine }
     };
     let least = group.iter().map(cosine).fold(1.0, f64::min);
     let sine = if least > 0.0 { (1.0 - least * least).max(0.0).sqrt() + CONE_MARGIN } else { 1.0 };
     let wide = axis == DVec3::ZERO || sine >= WIDE;
     // All around, a triangle sends a quarter of what it sends along its normal, one with two sides half.
-    let share = |source: &Source| match (source.normal == DVec3::ZERO, source.two_sided) {
+    let share = |source: &Source| match (source.normal == DVec3::ZERO, source.turns()) {
         (true, _) => 1.0,
         (_, true) => 0.5,
         (_, false) => 0.25,
@@ -147,5 +151,6 @@ pub(super) fn child(group: &[Source], strongest: f64) -> Child {
         strength: (intensity / strongest).max(LEAST_STRENGTH) as f32,
         axis,
         spread: Spread { sine: if wide { 1.0 } else { sine }, two_sided: two_sided && !wide },
+        closed: group.iter().any(|source| source.closed),
     }
 }

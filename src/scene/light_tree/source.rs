@@ -13,6 +13,15 @@ pub struct Source {
     pub normal: DVec3,
     /// Whether both sides emit.
     pub two_sided: bool,
+    /// Whether it is a part of a closed lamp, of which nobody outside sees the inner sides; then the normal is outward.
+    pub closed: bool,
     /// Intensity along the normal, averaged over the channels.
     pub strength: f64,
+}
+
+impl Source {
+    /// Whether it is all the same which of its sides the normal is on.
+    pub(super) fn turns(&self) -> bool {
+        self.two_sided && !self.closed
+    }
 }

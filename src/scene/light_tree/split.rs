@@ -28,7 +28,7 @@ impl Pile {
         self.low = self.low.min(a).min(b).min(c);
         self.high = self.high.max(a).max(b).max(c);
         self.strength += source.strength;
-        self.normals += if source.two_sided && normal.dot(axis) < 0.0 { -normal } else { normal };
+        self.normals += if source.turns() && normal.dot(axis) < 0.0 { -normal } else { normal };
     }
 
     fn with(self, other: Pile) -> Pile {
