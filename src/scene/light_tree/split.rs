@@ -79,8 +79,10 @@ pub(super) fn groups(sources: &mut [Source], balanced: bool) -> Vec<&mut [Source
         let (_, group) = groups.swap_remove(most);
         let cut = split(group, balanced);
         let (left, right) = group.split_at_mut(cut);
-        groups.push((cost(left), left));
-        groups.push((cost(right), right));
+        // The last ones are not split here.
+        let cost = |group: &[Source]| if groups.len() + 2 < CHILDREN { cost(group) } else { 0.0 };
+        let costs = [cost(left), cost(right)];
+        groups.extend(costs.into_iter().zip([left, right]));
     }
     groups.into_iter().map(|(_, group)| group).collect()
 }
