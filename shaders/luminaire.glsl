@@ -33,8 +33,8 @@ bool is_near(vec3 p, vec3 a, vec3 b, vec3 c, float area, out vec3 v[3], out floa
     return omega > LEAST_SOLID_ANGLE;
 }
 
-// The density per steradian with which direct_light at `p` gives the direction in which a ray from there met an emissive triangle.
-float triangle_density(vec3 p, vec3 wi, Hit hit, float area_density) {
+// The density per steradian with which direct_light at `p`, where the shading normal is `n`, gives the direction in which a ray from there met an emissive triangle.
+float triangle_density(vec3 p, vec3 n, vec3 wi, Hit hit, float area_density) {
     Triangle triangle = load_triangle(hit.triangle);
     vec3 a = triangle.a;
     vec3 b = triangle.b;
@@ -51,7 +51,7 @@ float triangle_density(vec3 p, vec3 wi, Hit hit, float area_density) {
     float scale = largest(abs(normal));
     float double_area = scale * length(normal / scale);
     float area = 0.5 * double_area;
-    area_density = max(area_density, frame.least_probability / area);
+    area_density = by_light_tree() ? tree_probability(p, n, light_path(hit)) / area : max(area_density, frame.least_probability / area);
     vec3 v[3];
     float omega;
     if (is_near(p, a, b, c, area, v, omega)) return area_density * area / omega;
@@ -70,7 +70,16 @@ float emission_weight(float pdf, float density) {
 // it takes no impulse there. Adds the shadow ray to `rays` (all, shadow).
 vec3 direct_light(Surfel s, Material material, vec3 wo, vec3 throughput, uvec4 random, float rest, uint salt, inout uvec2 rays) {
     if (frame.luminaire_count == 0u) return vec3(0.0);
-    Luminaire light = load_luminaire(choose_luminaire(random.z));
+    bool tree = by_light_tree();
+    uint chosen;
+    float probability = 0.0;
+    if (!tree) chosen = choose_luminaire(random.z);
+    else if (!choose_by_tree(s.position, s.shading_normal, random.z, random.w, chosen, probability)) return vec3(0.0);
+    Luminaire light = load_luminaire(chosen);
+    if (tree) {
+        light.probability = probability;
+        light.ideal_probability = probability;
+    }
     // With one kind of luminaire in the scene these are constants.
     bool several = int(POINT_LUMINAIRES) + int(INFINITE_LUMINAIRES) + int(AREA_LUMINAIRES) + int(ENVIRONMENT_SAMPLING) > 1;
     bool infinite = INFINITE_LUMINAIRES && (!several || light.kind == INFINITE);

@@ -3,6 +3,7 @@
 struct Path {
     vec3 origin;        // of the ray to trace next
     vec3 from;          // the point of the surface that it leaves
+    vec3 normal;        // the shading normal there, where LIGHT_TREE
     vec3 direction;
     vec3 throughput;    // what a unit of radiance along that ray adds to the pixel
     vec3 radiance;      // what was found so far
@@ -16,7 +17,7 @@ struct Path {
 Path camera_path(uvec2 pixel, uint pixel_index, uint sample_index) {
     vec3 origin, direction;
     sensor_ray(pixel, pixel_index, sample_index, origin, direction);
-    return Path(origin, origin, direction, vec3(1.0), vec3(0.0), 0u, IMPULSE, 1.0, false, vec3(1.0));
+    return Path(origin, origin, vec3(0.0), direction, vec3(1.0), vec3(0.0), 0u, IMPULSE, 1.0, false, vec3(1.0));
 }
 
 // What roulette is told of the throughput at the surface that the path has met.
@@ -49,7 +50,7 @@ bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uve
         if (ENVIRONMENT) {
             float density = 0.0;
             if (ENVIRONMENT_SAMPLING && LIGHT_SAMPLING == LIGHT_MIS && path.pdf != IMPULSE) {
-                density = frame.environment_probability * environment_density(path.direction);
+                density = environment_probability() * environment_density(path.direction);
             }
             float weight = emission_weight(path.pdf, density);
             if (weight > 0.0) path.radiance += path.throughput * environment_radiance(path.direction) * weight;
@@ -63,7 +64,7 @@ bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uve
     if (AREA_LUMINAIRES && material.emission != vec3(0.0)) {
         float density = 0.0;
         if (LIGHT_SAMPLING == LIGHT_MIS && path.pdf != IMPULSE) {
-            density = triangle_density(path.from, path.direction, hit, material.area_density);
+            density = triangle_density(path.from, path.normal, path.direction, hit, material.area_density);
         }
         path.radiance += path.throughput * material.emission * emission_weight(path.pdf, density);
     }
@@ -118,6 +119,7 @@ bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uve
     }
     if (IMPULSES && next.pdf != IMPULSE) path.scattered = true;
     path.from = s.position;
+    if (LIGHT_TREE) path.normal = s.shading_normal;
     path.origin = offset_ray_origin(s.position, s.position_error, s.geometric_normal, next.wi);
     path.direction = next.wi;
     path.pdf = next.pdf == IMPULSE ? IMPULSE : next.pdf * reweighted;

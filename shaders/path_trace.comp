@@ -17,6 +17,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "bsdf.glsl"
 #include "scatter.glsl"
 #include "environment.glsl"
+#include "light_tree.glsl"
 #include "luminaire.glsl"
 #include "sensor.glsl"
 #include "path.glsl"

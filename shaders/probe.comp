@@ -17,6 +17,7 @@ layout(local_size_x = 64) in;
 #include "bsdf.glsl"
 #include "scatter.glsl"
 #include "environment.glsl"
+#include "light_tree.glsl"
 #include "luminaire.glsl"
 #include "sensor.glsl"
 
@@ -45,6 +46,8 @@ const uint REFRACT = 15u;             // in: wo, eta (normal +z); out: direction
 const uint SENSOR_RAY = 16u;          // in: pixel x, y, index, sample; out: origin; direction
 const uint NUMBERS = 17u;             // in: pixel, sample, block, seed; out: the sampler's numbers
 const uint COVERAGE = 18u;            // in: pixel, sample, ray, seed; object, triangle; out: salt, number
+const uint CHOOSE_BY_TREE = 20u;      // in: point, random; normal, further bits; out: index (NONE: none), probability
+const uint TREE_PROBABILITY = 21u;    // in: point, place among the paths; normal; out: probability
 const uint SIN_COS = 19u;             // in: turns; y, x; out: sin and cos; angle(y, x)
 
 layout(set = 0, binding = 7, std430) writeonly buffer Out { uvec4 results[]; };
@@ -162,6 +165,15 @@ void main() {
         break;
     case SIN_COS:
         result = floatBitsToUint(vec4(sin_cos_turns(uintBitsToFloat(x.x)), angle(uintBitsToFloat(y.x), uintBitsToFloat(y.y)), 0.0));
+        break;
+    case CHOOSE_BY_TREE: {
+        float probability = 0.0;
+        bool found = choose_by_tree(uintBitsToFloat(x.xyz), uintBitsToFloat(y.xyz), x.w, y.w, result.x, probability);
+        result.xy = found ? uvec2(result.x, floatBitsToUint(probability)) : uvec2(NONE, 0u);
+        break;
+    }
+    case TREE_PROBABILITY:
+        result.x = floatBitsToUint(tree_probability(uintBitsToFloat(x.xyz), uintBitsToFloat(y.xyz), light_path(x.w)));
         break;
     case LEAVE: {
         Hit hit;

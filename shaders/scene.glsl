@@ -18,18 +18,19 @@ layout(constant_id = 13) const bool COATS = true;              // some material 
 layout(constant_id = 14) const bool MAP_TRANSFORMS = true;     // some map is moved or scaled
 layout(constant_id = 15) const bool ENVIRONMENT_IMAGE = true;  // that light has an image
 layout(constant_id = 16) const bool ENVIRONMENT_SAMPLING = true;    // light is sampled from there
-layout(constant_id = 17) const bool ORTHOGRAPHIC = false;
-layout(constant_id = 18) const bool SOBOL = false;
+layout(constant_id = 17) const bool LIGHT_TREE = true;         // luminaires are chosen by a tree over them
+layout(constant_id = 18) const bool ORTHOGRAPHIC = false;
+layout(constant_id = 19) const bool SOBOL = false;
 
 // The integrator's choices (src/scene/estimator.rs).
-layout(constant_id = 19) const bool SIMPLE = false;            // the simple ray tracer instead of the path tracer
-layout(constant_id = 20) const uint LIGHT_SAMPLING = 2u;
-layout(constant_id = 21) const bool SOLID_ANGLE = true;        // near triangles are sampled by solid angle
-layout(constant_id = 22) const uint DIRECTIONS = 2u;
-layout(constant_id = 23) const uint EXTINCTION = 3u;
-layout(constant_id = 24) const bool THRESHOLD = false;         // paths of small albedo end
+layout(constant_id = 20) const bool SIMPLE = false;            // the simple ray tracer instead of the path tracer
+layout(constant_id = 21) const uint LIGHT_SAMPLING = 2u;
+layout(constant_id = 22) const bool SOLID_ANGLE = true;        // near triangles are sampled by solid angle
+layout(constant_id = 23) const uint DIRECTIONS = 2u;
+layout(constant_id = 24) const uint EXTINCTION = 3u;
+layout(constant_id = 25) const bool THRESHOLD = false;         // paths of small albedo end
 
-layout(constant_id = 25) const bool TRANSPARENT = false;       // the camera does not see where its rays escape to, and they are counted
+layout(constant_id = 26) const bool TRANSPARENT = false;       // the camera does not see where its rays escape to, and they are counted
 
 const uint LIGHT_NONE = 0u;
 const uint LIGHT_DIRECT = 1u;
@@ -150,6 +151,9 @@ layout(set = 0, binding = 13) uniform usamplerBuffer environment_choice;
 // Vertex colours, three texels a triangle, where VERTEX_COLOURS.
 layout(set = 0, binding = 14) uniform usamplerBuffer colours;
 
+// The light tree (src/gpu/pack/light_tree.rs): a header, what is chosen beside the tree, nodes, paths.
+layout(set = 0, binding = 15) uniform usamplerBuffer light_tree;
+
 // No index.
 const uint NONE = 0xffffffffu;
 // The bits of an infinity, and of the exponent of all that is not finite.
@@ -157,10 +161,14 @@ const uint INFINITY_BITS = 0x7f800000u;
 
 // Sizes of the structures that are read as texels.
 const int TRIANGLE_TEXELS = 3;
-const int OBJECT_TEXELS = 7;
+const int OBJECT_TEXELS = 8;
 const int MATERIAL_TEXELS = 8;
 const int LUMINAIRE_TEXELS = 7;
 const int TEXTURE_TEXELS = 3;
+const int LIGHT_TREE_HEADER = 2;
+const int LIGHT_NODE_TEXELS = 8;
+// The bit of a link that says that it is an index of a luminaire, not of a node.
+const uint LEAF = 0x80000000u;
 
 vec3 row_dot(vec4 m[3], vec3 v) { return vec3(dot(m[0].xyz, v), dot(m[1].xyz, v), dot(m[2].xyz, v)); }
 vec3 translation(vec4 m[3]) { return vec3(m[0].w, m[1].w, m[2].w); }
@@ -172,12 +180,13 @@ struct Triangle {
     vec3 b;                // second corner
     uint index_in_mesh;    // in the scene's Mesh::triangles
     vec3 c;                // third corner
-    uint shape;            // LONGEST_EDGE and HAS_PLANE
+    uint shape;            // LONGEST_EDGE and HAS_PLANE; from ORDINAL_SHIFT on how many triangles before it in the mesh emit
 };
 // The bits of a shape: which edge is the longest (0: from a to b, 1: to c, 2: back to a), and whether the other two say what plane the
 // triangle lies in.
 const uint LONGEST_EDGE = 3u;
 const uint HAS_PLANE = 4u;
+const uint ORDINAL_SHIFT = 3u;
 
 // Of what the caller does not use the compiler leaves the texels out.
 Triangle load_triangle(uint index) {
@@ -194,11 +203,13 @@ struct ObjectPlace {
     uint triangle_offset;      // of the mesh's first triangle
     uint material;             // replaces the triangles' own, unless NONE
     uint scene_index;          // in Scene::objects
+    uint first_emitter;        // of the light tree's paths
 };
 
 ObjectPlace object_place(uint object) {
     uvec4 t = texelFetch(objects, int(object) * OBJECT_TEXELS + 6);
-    return ObjectPlace(t.x, t.y, t.z, t.w);
+    uint first_emitter = texelFetch(objects, int(object) * OBJECT_TEXELS + 7).x;
+    return ObjectPlace(t.x, t.y, t.z, t.w, first_emitter);
 }
 
 // Rows of the map to world space, and of its inverse.

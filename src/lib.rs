@@ -68,7 +68,8 @@
 //! | 15 | Sensor Modelling: pixel filter, lens, projection, shift | `sensor.glsl`: `sensor_ray`; [`reference::sensor`] | `reference::sensor`, `gpu::sensor` | `lens`, `lens/orthographic` |
 //! | 16 | Assumptions: escaping light disappears, steady state, RGB | `path.glsl`: `extend_path`; [`scene::Environment`] where a scene asks for one | `reference::environment`, `gpu::features` ("open air") | `furnace`, `environment` |
 //!
-//! Beyond the slides: multiple importance sampling (`luminaire.glsl`: `emission_weight`, `power_heuristic`), textures and holes
+//! Beyond the slides: multiple importance sampling (`luminaire.glsl`: `emission_weight`, `power_heuristic`), a tree over many luminaires
+//! (`light_tree.glsl`: `choose_by_tree`; [`scene::light_tree`], [`reference::light_tree`]; `gpu::light_tree`, `reference::light_tree`), textures and holes
 //! (`texture.glsl`), an environment (`environment.glsl`), Owen-scrambled Sobol points ([`sampling::sobol`]). Where a line of a slide is wrong taken
 //! literally (the half vector, missing densities, emission counted twice), what it means is computed; the extinction without
 //! re-weighting and the threshold stay selectable ([`scene::PRESETS`]), because their errors are instructive.

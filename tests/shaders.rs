@@ -255,9 +255,9 @@ fn twins() -> Vec<(&'static str, f64)> {
     use luminaire::gpu::pack::luminaire as bounds;
     use luminaire::gpu::probe::Function;
     use luminaire::gpu::specialization::{directions_number, extinction_number, light_sampling_number};
-    use luminaire::reference::{luminaire as light, path, scatter};
+    use luminaire::reference::{light_tree as choice, luminaire as light, path, scatter};
     use luminaire::sampling::{CDF_NUMBERS, SENSOR_BLOCK};
-    use luminaire::scene::{Directions, Extinction, Filter, LightSampling};
+    use luminaire::scene::{Directions, Extinction, Filter, LightSampling, light_tree};
     use std::f64::consts::{FRAC_PI_4, PI};
 
     assert_eq!(Filter::Box.inverse_cdf(0.5).len().div_ceil(4), layout::FILTER_TEXELS);
@@ -280,6 +280,18 @@ fn twins() -> Vec<(&'static str, f64)> {
         ("OBJECT_TEXELS", texels(size_of::<layout::Object>())),
         ("MATERIAL_TEXELS", texels(size_of::<layout::Material>())),
         ("LUMINAIRE_TEXELS", texels(size_of::<layout::Luminaire>())),
+        ("LIGHT_NODE_TEXELS", texels(size_of::<layout::LightNode>())),
+        ("LIGHT_TREE_HEADER", layout::LIGHT_TREE_HEADER as f64),
+        ("LEAF", light_tree::LEAF.into()),
+        ("ORDINAL_SHIFT", layout::ORDINAL_SHIFT.into()),
+        ("HORIZON_MARGIN", choice::HORIZON_MARGIN),
+        ("MOST_SINE", choice::MOST_SINE),
+        ("LEAST_IMPORTANCE", choice::LEAST_IMPORTANCE),
+        ("LEAST_DISTANCE2", choice::LEAST_DISTANCE2),
+        ("INNER_SIDE", choice::INNER_SIDE),
+        ("LEAST_WIDTH", choice::LEAST_WIDTH.into()),
+        ("LAST_FRACTION", choice::LAST_FRACTION),
+        ("MOST_NUMBERS", choice::MOST_NUMBERS),
         ("TEXTURE_TEXELS", texels(size_of::<layout::Texture>())),
         ("NODE_TEXELS", texels(size_of::<CwBvhNode>())),
         ("STACK_SIZE", STACK_SIZE as f64),
@@ -326,6 +338,8 @@ fn twins() -> Vec<(&'static str, f64)> {
         ("UNIFORM_HEMISPHERE", Function::UniformHemisphere as u32),
         ("GLOSSY_HALF_VECTOR", Function::GlossyHalfVector as u32),
         ("SCATTER", Function::Scatter as u32),
+        ("CHOOSE_BY_TREE", Function::ChooseByTree as u32),
+        ("TREE_PROBABILITY", Function::TreeProbability as u32),
         ("SPHERICAL_TRIANGLE", Function::SphericalTriangle as u32),
         ("SAMPLE_ENVIRONMENT", Function::SampleEnvironment as u32),
         ("ENVIRONMENT_AT", Function::EnvironmentAt as u32),

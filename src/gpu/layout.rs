@@ -17,6 +17,8 @@ pub const MIRROR: f32 = 0.0;
 pub const LONGEST_EDGE: u32 = 3;
 /// The bit of [`Triangle::shape`] that says that the other two edges give the triangle's plane.
 pub const HAS_PLANE: u32 = 4;
+/// Where in [`Triangle::shape`] the number of emissive triangles begins.
+pub const ORDINAL_SHIFT: u32 = 3;
 /// Texels of [`Frame::filter_table`].
 pub const FILTER_TEXELS: usize = 65;
 /// Workgroups of the path tracer and of the first hits are squares of this many pixels a side.
@@ -141,7 +143,8 @@ shared! {
         index_in_mesh: u32,
         /// Third corner.
         c: [f32; 3],
-        /// [`LONGEST_EDGE`] (0: from `a` to `b`, 1: to `c`, 2: back to `a`) and [`HAS_PLANE`].
+        /// [`LONGEST_EDGE`] (0: from `a` to `b`, 1: to `c`, 2: back to `a`) and [`HAS_PLANE`]; from [`ORDINAL_SHIFT`] on, how many triangles before
+        /// it in the mesh emit, where there is a light tree.
         shape: u32,
     }
 }
@@ -153,7 +156,7 @@ pub type VertexNormals = [[f32; 4]; 3];
 pub type VertexColours = [[f32; 4]; 3];
 
 shared! {
-    /// An instance (binding 4): seven texels, which `object_place` and its neighbours in `scene.glsl` read.
+    /// An instance (binding 4): eight texels, which `object_place` and its neighbours in `scene.glsl` read.
     Object {
         /// Rows of the map to world space.
         object_to_world: [[f32; 4]; 3],
@@ -167,6 +170,10 @@ shared! {
         material: u32,
         /// Index in the scene.
         scene_index: u32,
+        /// Its first emissive triangle among the paths of the light tree.
+        first_emitter: u32,
+        /// To a multiple of 16 bytes.
+        padding: [u32; 3],
     }
 }
 
@@ -251,6 +258,32 @@ shared! {
         material: u32,
         /// To a multiple of 16 bytes.
         padding: [u32; 3],
+    }
+}
+
+/// Texels at the beginning of the light tree (binding 15): the number of slots of what is chosen first, where nodes and paths begin, the probability
+/// of the tree; then that of the environment.
+pub const LIGHT_TREE_HEADER: usize = 2;
+
+shared! {
+    /// A node of the light tree: eight texels, which `light_importances` and `choose_by_tree` read.
+    LightNode {
+        /// For each of four children, the centre of a ball around it.
+        x: [f32; 4],
+        /// The same.
+        y: [f32; 4],
+        /// The same.
+        z: [f32; 4],
+        /// Its radius.
+        radius: [f32; 4],
+        /// Relative intensity; 0: there is no such child.
+        strength: [f32; 4],
+        /// Axis of the normals, x and y in 16 bits each.
+        axis_xy: [u32; 4],
+        /// Its z, and the sine around it, negative if both sides emit.
+        axis_z_spread: [u32; 4],
+        /// Index of a node, or that of a luminaire with the highest bit.
+        link: [u32; 4],
     }
 }
 

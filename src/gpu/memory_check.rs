@@ -6,7 +6,7 @@ use super::pack::texture::texel_count;
 use super::specialization::KernelModel;
 use super::vulkan::device::Device;
 use crate::memory::{available, gib};
-use crate::scene::Scene;
+use crate::scene::{LuminaireTable, Scene};
 use crate::{Error, Result};
 
 /// Bytes of the compute BVH's nodes for each triangle: 8.0 to 11.2 were measured, on meshes of 38 to 2 880 000 triangles.
@@ -23,11 +23,13 @@ pub(super) struct Budget {
     acceleration: u64,
     textures: u64,
     environment: u64,
+    /// The table, and the light tree.
+    luminaires: u64,
 }
 
 impl Budget {
     /// The buffers of a scene for a kernel of this model.
-    pub(super) fn of(scene: &Scene, ray_query: bool, model: &KernelModel) -> Self {
+    pub(super) fn of(scene: &Scene, table: &LuminaireTable, ray_query: bool, model: &KernelModel) -> Self {
         let features = &model.features;
         let triangles: u64 = scene.meshes.iter().map(|mesh| mesh.triangles.len() as u64).sum();
         let textured = features.textures || features.holes;
@@ -38,7 +40,12 @@ impl Budget {
         let objects = scene.objects.len() as u64 * size_of::<layout::Object>() as u64;
         let texels = texel_count(&scene.textures);
         let image = scene.environment.as_ref().and_then(|environment| environment.image.as_ref());
+        let tree = table
+            .tree
+            .as_ref()
+            .map_or(0, |tree| tree.nodes.len() * size_of::<layout::LightNode>() + tree.paths.len() * size_of::<u64>());
         Budget {
+            luminaires: (table.entries.len() * size_of::<layout::Luminaire>() + tree) as u64,
             geometry: triangles * triangle as u64 + objects,
             acceleration: triangles * if ray_query { ACCELERATION_STRUCTURE } else { BVH_NODES },
             textures: if textured { 8 * texels } else { 0 },
@@ -52,7 +59,7 @@ impl Budget {
     }
 
     fn total(&self) -> u64 {
-        self.geometry + self.acceleration + self.textures + self.environment
+        self.geometry + self.acceleration + self.textures + self.environment + self.luminaires
     }
 
     /// Refuses what the device's largest heap cannot hold, or this machine's memory: there the buffers are made, and a software
@@ -69,22 +76,24 @@ impl Budget {
         if needed <= limit {
             return Ok(());
         }
-        let Budget { geometry, acceleration, textures, environment } = *self;
-        let largest = (geometry + acceleration).max(textures).max(environment);
+        let Budget { geometry, acceleration, textures, environment, luminaires } = *self;
+        let largest = (geometry + acceleration).max(textures).max(environment).max(luminaires);
         let reduce = match largest {
             _ if largest == textures => "make the textures smaller",
             _ if largest == environment => "make the environment's image smaller",
+            _ if largest == luminaires => "make the lamps of fewer triangles",
             _ => "use fewer triangles, or instances of one mesh",
         };
         Err(Error::Limit {
             what: "the scene".into(),
             needed: format!(
-                "about {} of memory (geometry {}, acceleration structures {}, textures {}, environment {})",
+                "about {} of memory (geometry {}, acceleration structures {}, textures {}, environment {}, luminaires {})",
                 gib(needed),
                 gib(geometry),
                 gib(acceleration),
                 gib(textures),
-                gib(environment)
+                gib(environment),
+                gib(luminaires)
             ),
             device: device.into(),
             limit: format!("{}, {what}", gib(limit)),
@@ -104,8 +113,12 @@ mod tests {
     fn what_does_not_fit_is_named_with_its_largest_part() {
         let mut scene = build::empty(4, 4);
         build::add(&mut scene, build::icosphere(3), build::matte(Vec3::ONE), Affine3A::IDENTITY);
-        let budget = Budget::of(&scene, false, &KernelModel::of(&scene));
-        assert_eq!((budget.geometry, budget.textures, budget.environment), (1280 * 48 + 112, 0, 0));
+        let table = LuminaireTable::new(&scene);
+        let budget = Budget::of(&scene, &table, false, &KernelModel::of(&scene));
+        assert_eq!(
+            (budget.geometry, budget.textures, budget.environment, budget.luminaires),
+            (1280 * 48 + 128, 0, 0, 0)
+        );
         assert!(budget.fits(budget.total(), "a device", (budget.total(), "its heap")).is_ok());
         let error = budget.fits(budget.total(), "a device", (budget.total() - 1, "its heap")).unwrap_err().to_string();
         assert!(
@@ -118,7 +131,7 @@ mod tests {
         let mut outside = scene.clone();
         outside.environment = Some(Environment { radiance: Vec3::ONE, image: Some(image.into()), rotation: 0.0 });
         // Columns in fours are 64, 16, 4, 1; rows 32, 8, 2, 1.
-        let sky = Budget::of(&outside, true, &KernelModel::of(&outside)).environment;
+        let sky = Budget::of(&outside, &LuminaireTable::new(&outside), true, &KernelModel::of(&outside)).environment;
         assert_eq!(sky, 16 * ((1 << 15) + 128 * 85 + 43));
 
         let texels = vec![[f16::ONE; 4]; 1 << 16].into();
@@ -127,8 +140,8 @@ mod tests {
         let moved = Texture { transform: Affine2::from_translation(Vec2::X * 0.5), ..texture.clone() };
         scene.textures.extend([texture.into(), moved.into()]);
         scene.materials[0].maps.lambert = Some(0);
-        let textured = Budget::of(&scene, true, &KernelModel::of(&scene));
-        assert_eq!((textured.geometry, textured.textures), (1280 * 80 + 112, 8 << 16));
+        let textured = Budget::of(&scene, &table, true, &KernelModel::of(&scene));
+        assert_eq!((textured.geometry, textured.textures), (1280 * 80 + 128, 8 << 16));
         let error = textured.fits(9 << 30, "this machine", (8 << 30, "what is free now")).unwrap_err().to_string();
         assert!(
             ["9216.0 MiB", "8192.0 MiB, what is free", "textures smaller"].iter().all(|part| error.contains(part)),

@@ -58,6 +58,10 @@ pub enum Function {
     Coverage = 18,
     /// (turns), (y, x) to sine, cosine, angle.
     SinCos = 19,
+    /// (point, random bits), (normal, further bits) to an index into the luminaire table, or `NONE`, and its probability.
+    ChooseByTree = 20,
+    /// (point, place among the light tree's paths), (normal) to the probability of what is there.
+    TreeProbability = 21,
 }
 
 /// Arguments or results of one call.

@@ -6,6 +6,7 @@ use super::layout;
 use super::memory_check::Budget;
 use super::pack::environment::environment;
 use super::pack::frame::{aim, estimate, frame, light};
+use super::pack::light_tree::light_tree;
 use super::pack::luminaire::luminaires;
 use super::pack::material::material;
 use super::pack::texture::textures;
@@ -15,13 +16,13 @@ use super::vulkan::buffer::Buffer;
 use super::vulkan::device::Device;
 use super::vulkan::texel_buffer::TexelBuffer;
 use crate::Result;
-use crate::scene::{FilmSettings, Integrator, LuminaireTable, Scene, Sensor};
+use crate::scene::{Estimator, FilmSettings, Integrator, LightChoice, LightSampling, LuminaireTable, Scene, Sensor};
 use ash::vk;
 use bytemuck::Pod;
 use glam::DVec3;
 use std::sync::Arc;
 
-/// Bindings 0 to 6 and 9 to 14.
+/// Bindings 0 to 6 and 9 to 15.
 pub(super) struct GpuScene {
     frame: Buffer,
     /// What `frame` holds.
@@ -32,6 +33,8 @@ pub(super) struct GpuScene {
     texels: TexelBuffer,
     /// What the lighting is made of again for another integrator, with the places of the meshes' triangles; none if it is always the same.
     lit: Option<(Scene, Vec<MeshBvh>)>,
+    /// Whether the scene was made with a light tree, so that geometry leads to its leaves.
+    has_light_tree: bool,
     /// The scene's [`Scene::world_bounds`].
     bounds: (DVec3, DVec3),
     pub(super) model: KernelModel,
@@ -48,8 +51,8 @@ impl GpuScene {
         let table = LuminaireTable::new(scene);
         let mut model = KernelModel::with(scene, &table);
         adjust(&mut model);
-        Budget::of(scene, ray_query, &model).check(device)?;
-        let (geometry, places) = Geometry::build(device, scene, ray_query, &model)?;
+        Budget::of(scene, &table, ray_query, &model).check(device)?;
+        let (geometry, places) = Geometry::build(device, scene, ray_query, &model, table.tree.as_ref())?;
         let lighting = Lighting::new(device, scene, &table, &places)?;
         let (textures, texels) = if model.features.textures || model.features.holes {
             textures(&scene.textures)
@@ -65,6 +68,7 @@ impl GpuScene {
             textures: texel_buffer(device, "textures", &textures)?,
             texels: texel_buffer(device, "texels", &texels)?,
             lit: scene.environment.is_some().then(|| (scene.clone(), places)),
+            has_light_tree: table.tree.is_some(),
             bounds: scene.world_bounds(),
             model,
         })
@@ -82,18 +86,30 @@ impl GpuScene {
             let same = LuminaireTable::is_same_for(scene, integrator);
             scene.integrator = *integrator;
             if !same {
+                // With a tree or without as it was made: geometry leads to its leaves, and kernels of other integrators may come back to it.
+                let estimator = integrator.estimator();
+                let light_choice = if self.has_light_tree { LightChoice::Tree } else { LightChoice::Power };
+                let light_sampling = match estimator.light_sampling {
+                    LightSampling::None => LightSampling::Direct,
+                    sampling => sampling,
+                };
+                scene.integrator = Integrator::Path(Estimator { light_choice, light_sampling, ..estimator });
                 let table = LuminaireTable::new(scene);
+                scene.integrator = *integrator;
                 self.lighting = Lighting::new(device, scene, &table, places)?;
                 light(&mut self.frame_data, &table);
                 self.model.features.environment_sampling = table.environment.is_some();
             }
         }
         self.model.integrator = *integrator;
+        // One that was not made with the scene is not made now.
+        self.model.features.light_tree =
+            self.has_light_tree && integrator.estimator().light_choice != LightChoice::Power;
         estimate(&mut self.frame_data, integrator);
         self.frame.write(&[self.frame_data])
     }
 
-    /// Bindings 0 to 14, of which 7 and 8 are the caller's.
+    /// Bindings 0 to 15, of which 7 and 8 are the caller's.
     pub(super) fn bindings<'a>(&'a self, seven: &'a Buffer, eight: &'a Buffer) -> Vec<Binding<'a>> {
         let [intersector, triangles, normals, objects, uvs, colours] = self.geometry.bindings();
         vec![
@@ -112,6 +128,7 @@ impl GpuScene {
             Binding::Texel(&self.lighting.environment_texels),
             Binding::Texel(&self.lighting.environment_choice),
             colours,
+            Binding::Texel(&self.lighting.light_tree),
         ]
     }
 }
@@ -122,6 +139,7 @@ struct Lighting {
     luminaires: TexelBuffer,
     environment_texels: TexelBuffer,
     environment_choice: TexelBuffer,
+    light_tree: TexelBuffer,
 }
 
 impl Lighting {
@@ -129,11 +147,13 @@ impl Lighting {
         let materials: Vec<_> = (0..scene.materials.len()).map(|i| material(scene, table, i)).collect();
         let (environment_texels, environment_choice) =
             scene.environment.as_ref().map(|sky| environment(sky, table.environment.as_ref())).unwrap_or_default();
+        let tree = table.tree.as_ref().map(light_tree).unwrap_or_default();
         Ok(Lighting {
             materials: texel_buffer(device, "materials", &materials)?,
             luminaires: texel_buffer(device, "luminaires", &luminaires(scene, table, places))?,
             environment_texels: texel_buffer(device, "environment", &environment_texels)?,
             environment_choice: texel_buffer(device, "environment choice", &environment_choice)?,
+            light_tree: texel_buffer(device, "light tree", &tree)?,
         })
     }
 }

@@ -70,6 +70,8 @@ features! {
     environment_image: "image of the environment",
     /// Light is sampled from there.
     environment_sampling: "sampling of the environment",
+    /// Luminaires are chosen by a tree over them.
+    light_tree: "light tree",
 }
 
 /// The kernel that runs: the scene's features, and the choices of its integrator.
@@ -118,6 +120,7 @@ impl KernelModel {
             map_transforms: scene.textures.iter().any(|texture| texture.transform != Affine2::IDENTITY),
             environment_image: scene.environment.as_ref().is_some_and(|e| e.emits() && e.image.is_some()),
             environment_sampling: any(|l| matches!(l, SampledLuminaire::Environment)),
+            light_tree: table.tree.is_some(),
         };
         KernelModel {
             features,

@@ -282,7 +282,7 @@ impl Reference {
                 let random = random4(path, bounce, 1, 0);
                 let Some((radiance, light)) = self.unoccluded_light(vertex, random) else { continue };
                 let Some((surfaces, passed)) = self.straight_through(&light, random[3]) else { continue };
-                let at = self.luminaires.choice.choose(random[2]);
+                let at = light.luminaire;
                 let (side, lost) = match &self.luminaires.entries[at] {
                     SampledLuminaire::Impulse(_) => (&mut seen.impulses[at], surfaces > 0),
                     _ => {

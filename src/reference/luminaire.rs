@@ -20,6 +20,8 @@ pub const LEAST_SOLID_ANGLE: f64 = 1e-3;
 
 /// Light that would arrive from a luminaire if nothing were between.
 pub(super) struct Unoccluded {
+    /// Which it is: an index into the table.
+    pub(super) luminaire: usize,
     /// Unit direction to the luminaire.
     pub(super) wi: DVec3,
     /// Irradiance on a surface perpendicular to `wi`, over the probability of this sample.
@@ -34,7 +36,7 @@ pub(super) struct Unoccluded {
 }
 
 impl Reference {
-    /// Radiance towards `wo` from one luminaire, chosen by number 2 of `random` in proportion to its power and weighted by
+    /// Radiance towards `wo` from one luminaire, chosen by number 2 of `random` ([`Reference::choose_luminaire`]) and weighted by
     /// one over its probability; numbers 0 and 1 choose the point on it, or the direction to an environment. `salt` is that of the
     /// shadow ray; it is added, if there is one, to `rays`.
     ///
@@ -81,32 +83,38 @@ impl Reference {
 
     /// Chooses a luminaire and a point on it.
     pub(super) fn sample_luminaire(&self, surfel: &Surfel, random: [u32; 4]) -> Option<Unoccluded> {
-        if self.luminaires.entries.is_empty() {
-            return None;
-        }
-        let chosen = self.luminaires.choice.choose(random[2]);
-        let probability = self.luminaires.choice.pdf[chosen];
-        match &self.luminaires.entries[chosen] {
+        let (chosen, probability, ideal) = self.choose_luminaire(surfel, random)?;
+        let light = match &self.luminaires.entries[chosen] {
             SampledLuminaire::Impulse(luminaire) => impulse(surfel, luminaire, probability),
             SampledLuminaire::Area(triangle) => {
-                self.point_on_triangle(surfel, triangle, probability, uniform(random[0]), uniform(random[1]))
+                self.point_on_triangle(surfel, triangle, [probability, ideal], uniform(random[0]), uniform(random[1]))
             }
             SampledLuminaire::Environment => {
                 let (wi, density) = self.sample_environment([random[0], random[1]])?;
                 let pdf = probability * density;
                 let irradiance = self.environment_radiance(wi) / pdf;
                 let origin = surfel.offset_ray_origin(wi);
-                Some(Unoccluded { wi, irradiance, pdf: Some(pdf), origin, direction: wi, t_max: f64::INFINITY })
+                Some(Unoccluded {
+                    luminaire: chosen,
+                    wi,
+                    irradiance,
+                    pdf: Some(pdf),
+                    origin,
+                    direction: wi,
+                    t_max: f64::INFINITY,
+                })
             }
-        }
+        };
+        light.map(|light| Unoccluded { luminaire: chosen, ..light })
     }
 
-    /// A point on an emissive triangle: radiance over the density of its direction.
+    /// A point on an emissive triangle, which was chosen with a probability, and another one for the power heuristic: radiance over the density of
+    /// its direction.
     fn point_on_triangle(
         &self,
         surfel: &Surfel,
         triangle: &EmissiveTriangle,
-        probability: f64,
+        [probability, ideal]: [f64; 2],
         u: f64,
         v: f64,
     ) -> Option<Unoccluded> {
@@ -127,11 +135,11 @@ impl Reference {
             return None;
         }
         let density = self.triangle_density(surfel.position, triangle.vertices, point);
-        let ideal = self.luminaires.area_probability(triangle.material, triangle.area());
         // Both ends are inexact.
         let origin = surfel.offset_ray_origin(wi);
         let target = offset_ray_origin(point, position_error(triangle.vertices), triangle.normal, -wi);
         Some(Unoccluded {
+            luminaire: 0,
             wi,
             irradiance: self.emission_at(triangle, weights) / (probability * density),
             pdf: Some(ideal * density),
@@ -173,22 +181,29 @@ impl Reference {
         point.distance_squared(from) / (0.5 * projected)
     }
 
-    /// The density with which light sampling at `from` chooses the direction to a point of an emissive surface; per steradian, the choice
+    /// The density with which light sampling at a surface chooses the direction to a point of an emissive one; per steradian, the choice
     /// of the luminaire included.
-    pub fn luminaire_pdf(&self, from: DVec3, surfel: &Surfel) -> f64 {
+    pub fn luminaire_pdf(&self, from: &Surfel, surfel: &Surfel) -> f64 {
         let [object, triangle] = surfel.owner;
         let corners = self.corners(object, triangle);
+        let density = self.triangle_density(from.position, corners, surfel.position);
+        if let Some(tree) = self.light_tree() {
+            // One that is never chosen may be seen from the edge, where the density would be infinite.
+            let probability = self.tree_probability(tree, from, object, triangle);
+            return if probability == 0.0 { 0.0 } else { probability * density };
+        }
         let [a, b, c] = corners;
         let area = 0.5 * (b - a).cross(c - a).length();
         let object = &self.scene.objects[object as usize];
         let mesh = &self.scene.meshes[object.mesh as usize];
         let material = object.material.unwrap_or(mesh.triangles[triangle as usize].material);
-        self.luminaires.area_probability(material, area) * self.triangle_density(from, corners, surfel.position)
+        self.luminaires.area_probability(material, area) * density
     }
 
     /// The same for a direction to the environment.
     pub fn environment_pdf(&self, direction: DVec3) -> f64 {
-        self.luminaires.environment_probability() * self.environment_density(direction)
+        let tree = self.light_tree().map(|tree| tree.environment_probability);
+        tree.unwrap_or_else(|| self.luminaires.environment_probability()) * self.environment_density(direction)
     }
 }
 
@@ -201,13 +216,21 @@ fn impulse(surfel: &Surfel, luminaire: &Luminaire, probability: f64) -> Option<U
             let wi = to_light.try_normalize()?;
             let irradiance = intensity.as_dvec3() / to_light.length_squared() / probability;
             let origin = surfel.offset_ray_origin(wi);
-            Some(Unoccluded { wi, irradiance, pdf: None, origin, direction: position - origin, t_max: 1.0 })
+            Some(Unoccluded {
+                luminaire: 0,
+                wi,
+                irradiance,
+                pdf: None,
+                origin,
+                direction: position - origin,
+                t_max: 1.0,
+            })
         }
         Luminaire::Infinite { direction, irradiance } => {
             let wi = -direction.as_dvec3();
             let irradiance = irradiance.as_dvec3() / probability;
             let origin = surfel.offset_ray_origin(wi);
-            Some(Unoccluded { wi, irradiance, pdf: None, origin, direction: wi, t_max: f64::INFINITY })
+            Some(Unoccluded { luminaire: 0, wi, irradiance, pdf: None, origin, direction: wi, t_max: f64::INFINITY })
         }
     }
 }

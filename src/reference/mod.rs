@@ -6,7 +6,7 @@
 //! | lecture | here |
 //! |---|---|
 //! | Surface Element Class | [`surfel`]: `Surfel`; [`bsdf`]: `Surfel::bsdf`; [`texture`]: `bilinear` |
-//! | Lighting Functions, Shadows & Attenuation, Area Luminaires | [`luminaire`]: `direct_light`; [`environment`] |
+//! | Lighting Functions, Shadows & Attenuation, Area Luminaires | [`luminaire`]: `direct_light`; [`light_tree`]; [`environment`] |
 //! | Inefficient Integration, More Efficient Integration | [`bsdf`]: `bsdf_direction`, `bsdf_pdf`; [`warp`] |
 //! | Extinction | [`scatter`]: `scatter`, `survival` |
 //! | Impulse Reflection, Adding Transmission | [`impulse`]: `fresnel`, `refract`, `impulses` |
@@ -24,6 +24,7 @@ pub mod hit;
 pub mod impulse;
 mod instance;
 pub mod intersect;
+pub mod light_tree;
 pub mod lost_light;
 pub mod luminaire;
 pub mod path;

@@ -4,6 +4,7 @@ use super::hit::Hit;
 use super::luminaire::emission_weight;
 use super::prepared_scene::Reference;
 use super::scatter::{SURE_THROUGHPUT, roulette_throughput, scatter, survival};
+use super::surfel::Surfel;
 use crate::film::Rays;
 use crate::sampling::{light_block, ray_salt, scatter_block, uniform};
 use crate::scene::{Extinction, Integrator, LightSampling};
@@ -74,8 +75,8 @@ impl Reference {
         let mut combined_albedo = DVec3::ONE;
         // Whether a lobe has scattered the path at a surface before.
         let mut scattered_before = false;
-        // Where the ray comes from, and the density with which the path went there; none for the camera and impulses.
-        let mut from = DVec3::ZERO;
+        // The surface that the ray comes from, and the density with which the path went there; none for the camera and impulses.
+        let mut from: Option<Surfel> = None;
         let mut pdf = None;
         let mut rays = Rays::default();
         for bounce in 0.. {
@@ -92,7 +93,8 @@ impl Reference {
             let wo = -direction;
             let surfel = self.surfel(&hit, wo);
             if surfel.emission != DVec3::ZERO {
-                let weight = emission_weight(estimator.light_sampling, pdf, self.luminaire_pdf(from, &surfel));
+                let light_pdf = from.filter(|_| pdf.is_some()).map_or(0.0, |from| self.luminaire_pdf(&from, &surfel));
+                let weight = emission_weight(estimator.light_sampling, pdf, light_pdf);
                 radiance += throughput * weight * surfel.emission;
             }
             if estimator.max_bounces.is_some_and(|max| bounce > max) {
@@ -160,7 +162,7 @@ impl Reference {
                 throughput /= alive;
             }
             scattered_before |= scattered.pdf.is_some();
-            from = surfel.position;
+            from = Some(surfel);
             pdf = scattered.pdf.map(|pdf| pdf * reweighted);
             origin = surfel.offset_ray_origin(scattered.wi);
             direction = scattered.wi;

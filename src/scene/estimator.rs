@@ -53,6 +53,8 @@ pub struct Estimator {
     pub light_sampling: LightSampling,
     /// How a point on an area luminaire is chosen.
     pub area_sampling: AreaSampling,
+    /// How the luminaire is chosen whose light is sampled.
+    pub light_choice: LightChoice,
     /// How the direction of indirect light is chosen.
     pub directions: Directions,
     /// How chance ends a path.
@@ -84,6 +86,18 @@ pub enum AreaSampling {
     Area,
     /// Evenly over the solid angle where the triangle is near, over the area where it is far.
     SolidAngle,
+}
+
+/// How one of several luminaires is chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LightChoice {
+    /// By the tree where it pays ([`super::LuminaireTable`] says where), else by power.
+    Auto,
+    /// In proportion to their power, wherever the light is wanted.
+    Power,
+    /// By a tree over all that are not infinitely far away, in proportion to what may arrive (Conty Estevez and Kulla 2018).
+    Tree,
 }
 
 /// How the direction of indirect light is chosen.
@@ -119,6 +133,7 @@ impl Default for Estimator {
         Estimator {
             light_sampling: LightSampling::Mis,
             area_sampling: AreaSampling::SolidAngle,
+            light_choice: LightChoice::Auto,
             directions: Directions::Bsdf,
             extinction: Extinction::Throughput,
             albedo_threshold: None,
@@ -131,6 +146,7 @@ impl Default for Estimator {
 const COSINE: Estimator = Estimator {
     light_sampling: LightSampling::Direct,
     area_sampling: AreaSampling::Area,
+    light_choice: LightChoice::Power,
     directions: Directions::Cosine,
     extinction: Extinction::Surface,
     albedo_threshold: None,
@@ -185,6 +201,8 @@ pub struct EstimatorChanges {
     pub light_sampling: Option<LightSampling>,
     /// See [`Estimator::area_sampling`].
     pub area_sampling: Option<AreaSampling>,
+    /// See [`Estimator::light_choice`].
+    pub light_choice: Option<LightChoice>,
     /// See [`Estimator::directions`].
     pub directions: Option<Directions>,
     /// See [`Estimator::extinction`].
@@ -201,6 +219,7 @@ impl EstimatorChanges {
         Estimator {
             light_sampling: self.light_sampling.unwrap_or(estimator.light_sampling),
             area_sampling: self.area_sampling.unwrap_or(estimator.area_sampling),
+            light_choice: self.light_choice.unwrap_or(estimator.light_choice),
             directions: self.directions.unwrap_or(estimator.directions),
             extinction: self.extinction.unwrap_or(estimator.extinction),
             albedo_threshold: self.albedo_threshold.or(estimator.albedo_threshold),

@@ -1,7 +1,9 @@
-//! Every luminaire of a scene in one table, one of which is chosen by its power.
+//! Every luminaire of a scene in one table, one of which is chosen: by its power, or by a tree over them.
 
 use super::environment::EnvironmentDistribution;
-use super::estimator::{Directions, Estimator, Extinction, Integrator, LightSampling};
+use super::estimator::{Directions, Estimator, Extinction, Integrator, LightChoice, LightSampling};
+use super::lamp_shapes::lamp_shapes;
+use super::light_tree::{LightTree, Source};
 use super::luminaire::Luminaire;
 use super::material::Material;
 use super::mesh::{outward, widen};
@@ -58,12 +60,19 @@ pub struct LuminaireTable {
     pub area_density: Vec<f64>,
     /// But at least this, however small a triangle is.
     pub least_probability: f64,
+    /// Chooses by place in the stead of `choice`, where the scene asks for it or it pays.
+    pub tree: Option<LightTree>,
 }
 
 /// A luminaire is chosen at least so often as this share of what it would be if all had the same power.
 const LEAST_SHARE: f64 = 1.0 / 1024.0;
 /// And at least by so many of the 2^32 random numbers, of which the table may lose one to rounding.
 const LEAST_NUMBERS: f64 = 8.0;
+
+/// The least share of the whole with which one of so many is chosen.
+fn least_share(count: usize) -> f64 {
+    (LEAST_SHARE / count as f64).max(LEAST_NUMBERS / 4_294_967_296.0)
+}
 
 impl LuminaireTable {
     /// Collects the luminaires of a scene that emit anything.
@@ -103,18 +112,19 @@ impl LuminaireTable {
                 }
             })
             .collect();
+        let tree = light_tree(scene, &entries, &powers);
         let emits: Vec<bool> = powers.iter().map(|p| *p > 0.0).collect();
         let mut keep = emits.iter();
         entries.retain(|_| *keep.next().expect("one flag an entry"));
         let mut powers: Vec<f64> = powers.into_iter().filter(|p| *p > 0.0).collect();
         // What no random number stood for would never be found, and the power heuristic would wait for it.
-        let least_share = (LEAST_SHARE / powers.len() as f64).max(LEAST_NUMBERS / 4_294_967_296.0);
-        let least = least_share * powers.iter().sum::<f64>();
+        let least = least_share(powers.len()) * powers.iter().sum::<f64>();
         powers.iter_mut().for_each(|power| *power = power.max(least));
         let total_power: f64 = powers.iter().sum();
         let area_density = exitance.iter().map(|e| if *e == 0.0 { 0.0 } else { e / total_power }).collect();
         let least_probability = if powers.is_empty() { 0.0 } else { least / total_power };
-        LuminaireTable { choice: AliasTable::new(&powers), entries, environment, area_density, least_probability }
+        let choice = AliasTable::new(&powers);
+        LuminaireTable { choice, entries, environment, area_density, least_probability, tree }
     }
 
     /// Whether the table of a scene would be the same with another integrator: with a sky it depends on what else finds its light.
@@ -127,6 +137,14 @@ impl LuminaireTable {
     /// weights have to add up to 1 wherever the light is found, goes by this.
     pub fn area_probability(&self, material: u32, area: f64) -> f64 {
         (self.area_density[material as usize] * area).max(self.least_probability)
+    }
+
+    /// The probability of choosing an entry, as the power heuristic has it.
+    pub fn ideal_probability(&self, entry: usize) -> f64 {
+        match &self.entries[entry] {
+            SampledLuminaire::Area(triangle) => self.area_probability(triangle.material, triangle.area()),
+            SampledLuminaire::Impulse(_) | SampledLuminaire::Environment => self.choice.pdf[entry],
+        }
     }
 
     /// The probability of choosing the environment; 0 if there is none.
@@ -152,6 +170,66 @@ fn left_to_paths(scene: &Scene, integrator: &Integrator) -> f64 {
         true if scene.materials.iter().any(several) => 0.5,
         true => 1.0,
     }
+}
+
+/// The tree over all entries that are somewhere and emit, if the estimator chooses by one; `entries` may have some of no power, which the table
+/// leaves out.
+fn light_tree(scene: &Scene, entries: &[SampledLuminaire], powers: &[f64]) -> Option<LightTree> {
+    let estimator = scene.integrator.estimator();
+    if estimator.light_sampling == LightSampling::None || estimator.light_choice == LightChoice::Power {
+        return None;
+    }
+    let mean = |colour: Vec3| colour.as_dvec3().element_sum() / 3.0;
+    let (mut sources, mut outer, mut index) = (vec![], vec![], 0);
+    // That of the tree first.
+    let mut outer_powers = vec![0.0];
+    // Which of the emissive triangles an entry of the table is.
+    let (mut place, mut emissive) = (vec![], 0);
+    for (entry, own_power) in entries.iter().zip(powers) {
+        let is_area = matches!(entry, SampledLuminaire::Area(_));
+        let own_place = is_area.then_some(emissive);
+        emissive += u32::from(is_area);
+        if !(*own_power > 0.0) {
+            continue;
+        }
+        let source = |corners, normal, two_sided, strength| Source {
+            entry: index,
+            corners,
+            normal,
+            two_sided,
+            closed: false,
+            strength,
+        };
+        match entry {
+            SampledLuminaire::Impulse(Luminaire::Point { position, intensity }) => {
+                sources.push(source([*position; 3], DVec3::ZERO, false, mean(*intensity)));
+                outer_powers[0] += own_power;
+            }
+            SampledLuminaire::Area(triangle) => {
+                let two_sided = !scene.materials[triangle.material as usize].one_sided;
+                let corners = triangle.vertices.map(|vertex| vertex.as_vec3());
+                // The power of a side is pi times this.
+                let strength = own_power / PI * if two_sided { 0.5 } else { 1.0 };
+                sources.push(source(corners, triangle.normal, two_sided, strength));
+                outer_powers[0] += own_power;
+            }
+            SampledLuminaire::Impulse(Luminaire::Infinite { .. }) | SampledLuminaire::Environment => {
+                outer.push(index);
+                outer_powers.push(*own_power);
+            }
+        }
+        place.push(own_place);
+        index += 1;
+    }
+    if sources.is_empty() || (lamp_shapes(&mut sources) == 1 && estimator.light_choice == LightChoice::Auto) {
+        return None;
+    }
+    let environment = matches!(entries.last(), Some(SampledLuminaire::Environment));
+    let environment = environment && powers.last().is_some_and(|power| *power > 0.0);
+    let least = least_share(outer_powers.len()) * outer_powers.iter().sum::<f64>();
+    outer_powers.iter_mut().for_each(|weight| *weight = weight.max(least));
+    let place = |entry: u32| place[entry as usize];
+    Some(LightTree::new(scene, sources, place, emissive as usize, &outer, &outer_powers, environment))
 }
 
 /// Power that a surface of this material emits for each unit of area, averaged over the channels and over its texture.

@@ -11,6 +11,8 @@ mod environment;
 mod estimator;
 mod filter;
 mod first_view;
+mod lamp_shapes;
+pub mod light_tree;
 mod load;
 mod luminaire;
 mod luminaire_table;
@@ -29,10 +31,11 @@ pub use crate::sampling::Sampler;
 pub use coat::coat_transmittance;
 pub use environment::{Environment, EnvironmentDistribution, EnvironmentImage};
 pub use estimator::{
-    AreaSampling, Directions, Estimator, EstimatorChanges, Extinction, Integrator, LightSampling, PRESETS,
+    AreaSampling, Directions, Estimator, EstimatorChanges, Extinction, Integrator, LightChoice, LightSampling, PRESETS,
 };
 pub use filter::Filter;
 pub use first_view::{FirstView, Side};
+pub use light_tree::LightTree;
 pub use load::{Choices, SceneFile, Sky, Up, load, load_with, scene_file, use_camera};
 pub use luminaire::Luminaire;
 pub use luminaire_table::{EmissiveTriangle, LuminaireTable, SampledLuminaire};

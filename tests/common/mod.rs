@@ -4,6 +4,7 @@
 pub mod devices;
 pub mod directions;
 pub mod lamps;
+pub mod many_lamps;
 pub mod scenes;
 pub mod statistics;
 pub mod touching;

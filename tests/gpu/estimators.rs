@@ -7,7 +7,8 @@ use crate::common::statistics::*;
 use glam::{Affine3A, Vec3};
 use luminaire::render::Tracer;
 use luminaire::scene::{
-    AreaSampling, Directions, Environment, Estimator, Extinction, Integrator, LightSampling, Material, Scene,
+    AreaSampling, Directions, Environment, Estimator, Extinction, Integrator, LightChoice, LightSampling, Material,
+    Scene,
 };
 
 /// Mean radiance over the picture: 512 samples of 32 x 32 pixels.
@@ -16,7 +17,7 @@ fn measure(backend: &Intersector, scene: &Scene) -> Estimate {
     total(&render(tracer, 32, 32, 512, 16))
 }
 
-/// The same mean from light sampling, none and both; from uniform, cosine and BSDF directions; from every termination that is unbiased; by
+/// The same mean from light sampling, none and both, by the light tree (which the default has here, two lamps) and by power; from uniform, cosine and BSDF directions; from every termination that is unbiased; by
 /// area and by solid angle. Two-sided t-tests against the default, each with its own seed, corrected for their number.
 #[test]
 fn every_unbiased_estimator_has_one_mean() {
@@ -29,6 +30,8 @@ fn every_unbiased_estimator_has_one_mean() {
         Estimator { light_sampling: LightSampling::Direct, area_sampling: AreaSampling::Area, ..default },
         Estimator { light_sampling: LightSampling::Direct, directions: Directions::Uniform, ..default },
         Estimator { area_sampling: AreaSampling::Area, ..default },
+        Estimator { light_choice: LightChoice::Power, ..default },
+        Estimator { light_sampling: LightSampling::Direct, light_choice: LightChoice::Power, ..default },
         Estimator { directions: Directions::Uniform, ..default },
         Estimator { directions: Directions::Cosine, ..default },
         Estimator { extinction: Extinction::Surface, ..default },
@@ -45,13 +48,14 @@ fn every_unbiased_estimator_has_one_mean() {
     let Some(backend) = backends().into_iter().next() else { return };
     let reference = measure(&backend, &scene);
     assert!(reference.error < 3e-3 * reference.mean);
+    let count = others.len();
     for (index, estimator) in others.into_iter().enumerate() {
         scene.integrator = Integrator::Path(estimator);
         scene.settings.seed = index as u32 + 1;
         let found = measure(&backend, &scene);
         let z = (found.mean - reference.mean) / found.error.hypot(reference.error);
         println!("{estimator:?}: {} +- {}, z = {z:.2}", found.mean, found.error);
-        assert!(sidak(two_sided(z), 10) >= SIGNIFICANCE, "{estimator:?}: {found:?} and {reference:?}, z = {z:.2}");
+        assert!(sidak(two_sided(z), count) >= SIGNIFICANCE, "{estimator:?}: {found:?} and {reference:?}, z = {z:.2}");
         assert!(found.error < 3e-2 * found.mean, "{estimator:?}: not sharp");
     }
     assert_eq!(validation_messages(), 0);

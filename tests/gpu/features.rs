@@ -8,7 +8,9 @@ use crate::common::statistics::*;
 use glam::Vec3;
 use luminaire::gpu::specialization::Features;
 use luminaire::reference::Reference;
-use luminaire::scene::{AreaSampling, Directions, Estimator, Extinction, Integrator, LightSampling, Projection, Scene};
+use luminaire::scene::{
+    AreaSampling, Directions, Estimator, Extinction, Integrator, LightChoice, LightSampling, Projection, Scene,
+};
 
 /// The four scenes that have all features between them.
 pub fn scenes(size: u32) -> Vec<(&'static str, Scene)> {
@@ -76,6 +78,8 @@ fn every_choice_of_the_estimator_equals_the_reference() {
         ("no light sampling", Estimator { light_sampling: LightSampling::None, ..base }),
         ("direct", Estimator { light_sampling: LightSampling::Direct, ..base }),
         ("by area", Estimator { area_sampling: AreaSampling::Area, ..base }),
+        ("by power", Estimator { light_choice: LightChoice::Power, ..base }),
+        ("by the tree", Estimator { light_choice: LightChoice::Tree, ..base }),
         ("uniform", Estimator { directions: Directions::Uniform, ..base }),
         ("cosine", Estimator { directions: Directions::Cosine, ..base }),
         ("no extinction", Estimator { extinction: Extinction::Off, ..base }),

@@ -18,6 +18,7 @@ mod framing;
 mod functions;
 mod glass;
 mod intersection;
+mod light_tree;
 mod maps;
 mod overlapping_lamps;
 mod pictures;

@@ -1,10 +1,10 @@
-//! The choice of a luminaire, by chance and by the power heuristic.
+//! The choice of a luminaire by power: by chance and by the power heuristic.
 
 use crate::common::scenes::*;
 use glam::{Affine3A, DVec3, Vec3};
 use luminaire::reference::Reference;
 use luminaire::sampling::random4;
-use luminaire::scene::{LuminaireTable, SampledLuminaire, Scene};
+use luminaire::scene::{Estimator, Integrator, LightChoice, LuminaireTable, SampledLuminaire, Scene};
 
 /// 2^16 lamps of very different sizes in a row: one in eight is as large as all others together are small, down to 1e-4 of the mean and to
 /// what no random number stands for.
@@ -17,6 +17,8 @@ fn many_lamps() -> Scene {
         triangles.push([3 * i, 3 * i + 1, 3 * i + 2]);
     }
     let mut scene = empty(1, 1);
+    let light_choice = LightChoice::Power;
+    scene.integrator = Integrator::Path(Estimator { light_choice, ..Estimator::default() });
     add(&mut scene, mesh(positions, &triangles), lamp(Vec3::ONE), Affine3A::IDENTITY);
     add(
         &mut scene,
@@ -65,7 +67,7 @@ fn both_strategies_have_one_density() {
         else {
             continue;
         };
-        let by_chance = tracer.luminaire_pdf(floor.position, &tracer.surfel(&met, -wi));
+        let by_chance = tracer.luminaire_pdf(&floor, &tracer.surfel(&met, -wi));
         assert!((density / by_chance - 1.0).abs() < 1e-6, "lamp {}: {density} and {by_chance}", met.triangle);
         seen[met.triangle as usize % 8] += 1;
     }

@@ -10,6 +10,7 @@ mod exposure;
 mod impulses;
 mod intersection;
 mod light;
+mod light_tree;
 mod lost_light;
 mod luminaire_choice;
 mod overlapping_lamps;

@@ -3,8 +3,8 @@
 use super::*;
 use glam::Vec3;
 use luminaire::scene::{
-    AreaSampling, Directions, Environment, Estimator, Exposure, Extinction, Filter, Integrator, Lens, LightSampling,
-    PRESETS, Projection, Sampler, Tone,
+    AreaSampling, Directions, Environment, Estimator, Exposure, Extinction, Filter, Integrator, Lens, LightChoice,
+    LightSampling, PRESETS, Projection, Sampler, Tone,
 };
 
 const OBJECT: &str = "[[object]]\nmesh = \"mesh.obj\"\n";
@@ -82,11 +82,12 @@ fn estimators_by_name_and_by_parts() {
     for (name, estimator) in PRESETS {
         assert_eq!(path(&format!("estimator = \"{name}\"\n")), estimator, "{name}");
     }
-    let parts = "light_sampling = \"direct\"\narea_sampling = \"area\"\ndirections = \"uniform\"\nextinction = \"off\"\n\
+    let parts = "light_sampling = \"direct\"\narea_sampling = \"area\"\nlight_choice = \"tree\"\ndirections = \"uniform\"\nextinction = \"off\"\n\
                  albedo_threshold = 0.01\nmax_bounces = 3\n";
     let expected = Estimator {
         light_sampling: LightSampling::Direct,
         area_sampling: AreaSampling::Area,
+        light_choice: LightChoice::Tree,
         directions: Directions::Uniform,
         extinction: Extinction::Off,
         albedo_threshold: Some(0.01),

@@ -97,6 +97,7 @@ fn numbers_and_names() {
         ["--estimator", "photon"],
         ["--light-sampling", "some"],
         ["--area-sampling", "some"],
+        ["--light-choice", "some"],
         ["--directions", "some"],
         ["--extinction", "some"],
         ["--albedo-threshold", "2"],

@@ -10,7 +10,7 @@ use luminaire::reference::Reference;
 use luminaire::reference::warp::uniform_hemisphere;
 use luminaire::sampling::{random4, uniform};
 use luminaire::scene::build::{add, empty, lamp, matte, quad};
-use luminaire::scene::{LuminaireTable, SampledLuminaire};
+use luminaire::scene::{Estimator, Integrator, LightChoice, LuminaireTable, SampledLuminaire};
 use luminaire_measure::chart::{Chart, Series};
 use luminaire_measure::stability::Sweep;
 use luminaire_measure::stability::sweeps::{caustics, edge_on, glossy, glossy_caustics, luminaire as lamps};
@@ -132,17 +132,20 @@ fn densities_of_several_lamps() {
         let tilted = Vec3::new(1.0, 0.2, 0.0) * side;
         add(&mut scene, quad(corner, tilted, Vec3::Z * side), lamp(Vec3::splat(radiance)), Affine3A::IDENTITY);
     }
+    let light_choice = LightChoice::Power;
+    scene.integrator = Integrator::Path(Estimator { light_choice, ..Estimator::default() });
     let table = LuminaireTable::new(&scene);
     let tracer = Reference::new(&scene);
     let below = tracer.closest_hit(DVec3::Y * 0.1, -DVec3::Y, f64::INFINITY, 0).expect("the floor");
-    let from = tracer.surfel(&below, DVec3::Y).position;
+    let floor = tracer.surfel(&below, DVec3::Y);
+    let from = floor.position;
     const N: u32 = 200_000;
     let found: Vec<Option<(u32, f64)>> = (0..N)
         .map(|i| {
             let [u, v, ..] = random4(i, 0, 0, 7).map(uniform);
             let wi = uniform_hemisphere(DVec3::Y, u, v);
             let hit = tracer.closest_hit(from + 1e-9 * DVec3::Y, wi, f64::INFINITY, 0)?;
-            Some((hit.object, TAU * tracer.luminaire_pdf(from, &tracer.surfel(&hit, -wi))))
+            Some((hit.object, TAU * tracer.luminaire_pdf(&floor, &tracer.surfel(&hit, -wi))))
         })
         .collect();
     for object in 1..=3 {

@@ -8,7 +8,7 @@ use crate::gpu::specialization::KernelModel;
 use crate::gpu::vulkan::binding::Binding;
 use crate::gpu::vulkan::device::Device;
 use crate::gpu::vulkan::texel_buffer::TexelBuffer;
-use crate::scene::Scene;
+use crate::scene::{LightTree, Scene};
 use crate::{Error, Result};
 use ash::vk;
 use glam::Vec3;
@@ -41,15 +41,21 @@ impl Geometry {
         scene: &Scene,
         ray_query: bool,
         model: &KernelModel,
+        tree: Option<&LightTree>,
     ) -> Result<(Self, Vec<MeshBvh>)> {
         if ray_query {
-            Self::build_ray_query(device, scene, model)
+            Self::build_ray_query(device, scene, model, tree)
         } else {
-            Self::build_compute_bvh(device, scene, model)
+            Self::build_compute_bvh(device, scene, model, tree)
         }
     }
 
-    fn build_compute_bvh(device: &Arc<Device>, scene: &Scene, model: &KernelModel) -> Result<(Self, Vec<MeshBvh>)> {
+    fn build_compute_bvh(
+        device: &Arc<Device>,
+        scene: &Scene,
+        model: &KernelModel,
+        tree: Option<&LightTree>,
+    ) -> Result<(Self, Vec<MeshBvh>)> {
         let bvh = TwoLevelBvh::build(scene, model.features.instances);
         if bvh.stack_depth > STACK_SIZE {
             return Err(Error::Limit {
@@ -64,13 +70,19 @@ impl Geometry {
         }
         let nodes = TexelBuffer::new(device, "BVH nodes", &bvh.nodes, vk::BufferUsageFlags::empty())?;
         let usage = vk::BufferUsageFlags::empty();
-        let geometry = Self::with_order(device, scene, model, &bvh.meshes, &bvh.object_order, usage, |_, _| {
-            Ok(Intersector::ComputeBvh(nodes))
-        })?;
+        let geometry =
+            Self::with_order(device, scene, (model, tree), &bvh.meshes, &bvh.object_order, usage, |_, _| {
+                Ok(Intersector::ComputeBvh(nodes))
+            })?;
         Ok((geometry, bvh.meshes))
     }
 
-    fn build_ray_query(device: &Arc<Device>, scene: &Scene, model: &KernelModel) -> Result<(Self, Vec<MeshBvh>)> {
+    fn build_ray_query(
+        device: &Arc<Device>,
+        scene: &Scene,
+        model: &KernelModel,
+        tree: Option<&LightTree>,
+    ) -> Result<(Self, Vec<MeshBvh>)> {
         let mut triangle_offset = 0;
         let meshes: Vec<MeshBvh> = scene
             .meshes
@@ -100,7 +112,7 @@ impl Geometry {
         let usage = vk::BufferUsageFlags::SHADER_DEVICE_ADDRESS
             | vk::BufferUsageFlags::ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_KHR;
         let order = spatial_order(&centres);
-        let geometry = Self::with_order(device, scene, model, &meshes, &order, usage, |triangles, objects| {
+        let geometry = Self::with_order(device, scene, (model, tree), &meshes, &order, usage, |triangles, objects| {
             ray_query::TopLevel::build(device, scene, &meshes, triangles, objects).map(Intersector::RayQuery)
         })?;
         Ok((geometry, meshes))
@@ -110,18 +122,18 @@ impl Geometry {
     fn with_order(
         device: &Arc<Device>,
         scene: &Scene,
-        model: &KernelModel,
+        (model, tree): (&KernelModel, Option<&LightTree>),
         meshes: &[MeshBvh],
         object_order: &[u32],
         usage: vk::BufferUsageFlags,
         intersector: impl FnOnce(&TexelBuffer, &[Object]) -> Result<Intersector>,
     ) -> Result<Self> {
-        let corners = triangles(scene, meshes);
+        let corners = triangles(scene, meshes, model.features.light_tree);
         let normals = if model.features.vertex_normals { vertex_normals(scene, meshes) } else { vec![] };
         let textured = model.features.textures || model.features.holes;
         let uvs = if textured { texture_coordinates(scene, meshes) } else { vec![] };
         let colours = if model.features.vertex_colours { vertex_colours(scene, meshes) } else { vec![] };
-        let objects: Vec<Object> = object_order.iter().map(|&index| object(scene, meshes, index)).collect();
+        let objects: Vec<Object> = object_order.iter().map(|&index| object(scene, meshes, tree, index)).collect();
         let triangles = TexelBuffer::new(device, "triangles", &corners, usage)?;
         let normals = TexelBuffer::new(device, "normals", &normals, vk::BufferUsageFlags::empty())?;
         let uvs = TexelBuffer::new(device, "texture coordinates", &uvs, vk::BufferUsageFlags::empty())?;

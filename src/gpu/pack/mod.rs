@@ -2,6 +2,7 @@
 
 pub(super) mod environment;
 pub(super) mod frame;
+pub(super) mod light_tree;
 pub mod luminaire;
 pub(super) mod material;
 pub(super) mod texture;

@@ -1,7 +1,8 @@
 //! Triangles and objects, in the order in which the kernel counts them.
 
 use crate::gpu::bvh::MeshBvh;
-use crate::gpu::layout::{self, HAS_PLANE, VertexColours, VertexNormals};
+use crate::gpu::layout::{self, HAS_PLANE, ORDINAL_SHIFT, VertexColours, VertexNormals};
+use crate::scene::light_tree::{LightTree, emissive_ordinals};
 use crate::scene::{Mesh, Scene, Texture, Triangle, widen};
 use glam::{DAffine3, Vec2, Vec3};
 
@@ -13,14 +14,24 @@ fn in_order<'a>(scene: &'a Scene, meshes: &'a [MeshBvh]) -> impl Iterator<Item =
     })
 }
 
-/// The triangles of all meshes.
-pub(in crate::gpu) fn triangles(scene: &Scene, meshes: &[MeshBvh]) -> Vec<layout::Triangle> {
+/// The triangles of all meshes; `ordinals`: with the numbers of emissive triangles before each, which the light tree wants.
+pub(in crate::gpu) fn triangles(scene: &Scene, meshes: &[MeshBvh], ordinals: bool) -> Vec<layout::Triangle> {
     let mut packed = Vec::with_capacity(count(meshes));
     packed.extend(in_order(scene, meshes).map(|(mesh, index_in_mesh, triangle)| {
         let corners = triangle.vertices.map(|v| mesh.positions[v as usize]);
         let [a, b, c] = corners.map(|corner| corner.to_array());
         layout::Triangle { a, material: triangle.material, b, index_in_mesh, c, shape: shape(corners) }
     }));
+    if ordinals {
+        let mut first = 0;
+        for (mesh, place) in scene.meshes.iter().zip(meshes) {
+            let ordinals = emissive_ordinals(scene, mesh);
+            for (packed, &index) in packed[first..].iter_mut().zip(&place.order) {
+                packed.shape |= ordinals.get(index as usize).map_or(0, |ordinal| ordinal << ORDINAL_SHIFT);
+            }
+            first += place.order.len();
+        }
+    }
     packed
 }
 
@@ -70,7 +81,12 @@ fn count(meshes: &[MeshBvh]) -> usize {
 }
 
 /// The object of this index in the scene.
-pub(in crate::gpu) fn object(scene: &Scene, meshes: &[MeshBvh], index: u32) -> layout::Object {
+pub(in crate::gpu) fn object(
+    scene: &Scene,
+    meshes: &[MeshBvh],
+    tree: Option<&LightTree>,
+    index: u32,
+) -> layout::Object {
     let object = &scene.objects[index as usize];
     let place = &meshes[object.mesh as usize];
     let to_world = widen(object.object_to_world);
@@ -81,6 +97,8 @@ pub(in crate::gpu) fn object(scene: &Scene, meshes: &[MeshBvh], index: u32) -> l
         triangle_offset: place.triangle_offset,
         material: object.material.unwrap_or(layout::NONE),
         scene_index: index,
+        first_emitter: tree.map_or(0, |tree| tree.first_of_object[index as usize]),
+        padding: [0; 3],
     }
 }
 

@@ -1,6 +1,6 @@
 //! The line that describes an integrator.
 
-use luminaire::scene::{AreaSampling, Directions, Estimator, Extinction, Integrator, LightSampling};
+use luminaire::scene::{AreaSampling, Directions, Estimator, Extinction, Integrator, LightChoice, LightSampling};
 
 /// The integrator in plain words: the preset's name, if there is one, and every part.
 pub fn describe(integrator: &Integrator) -> String {
@@ -27,6 +27,11 @@ pub fn describe(integrator: &Integrator) -> String {
         (_, AreaSampling::Area) => ", lamps by area",
         (_, AreaSampling::SolidAngle) => ", near lamps by solid angle",
     };
+    let choice = match (estimator.light_sampling, estimator.light_choice) {
+        (LightSampling::None, _) | (_, LightChoice::Auto) => "",
+        (_, LightChoice::Power) => ", luminaires by power",
+        (_, LightChoice::Tree) => ", luminaires by the light tree",
+    };
     let directions = match estimator.directions {
         Directions::Uniform => "uniform directions",
         Directions::Cosine => "cosine-distributed directions",
@@ -48,7 +53,7 @@ pub fn describe(integrator: &Integrator) -> String {
         Some(1) => "at most 1 indirect bounce".into(),
         Some(n) => format!("at most {n} indirect bounces"),
     };
-    format!("path tracer{preset}: {light}{area}, {directions}, {extinction}{threshold}, {bounces}")
+    format!("path tracer{preset}: {light}{area}{choice}, {directions}, {extinction}{threshold}, {bounces}")
 }
 
 #[cfg(test)]

@@ -1,7 +1,8 @@
 //! The tables of `luminaire inspect`.
 
 use luminaire::glam::{Affine2, DVec3, Vec2, Vec3};
-use luminaire::scene::{Environment, Luminaire, LuminaireTable, Material, Mesh, SampledLuminaire, Scene};
+use luminaire::scene::light_tree::LightNode;
+use luminaire::scene::{Environment, LightTree, Luminaire, LuminaireTable, Material, Mesh, SampledLuminaire, Scene};
 
 /// Meshes and what they have.
 pub(super) fn meshes(scene: &Scene) -> Vec<Vec<String>> {
@@ -139,22 +140,29 @@ pub(super) fn luminaires(scene: &Scene) -> Vec<Vec<String>> {
     let mut rows = Vec::new();
     let (mut triangles, mut area, mut chance) = (0u64, 0.0, 0.0);
     let percent = |p: f64| format!("chosen {:.1} %", p * 100.0);
-    for (entry, pdf) in table.entries.iter().zip(&table.choice.pdf) {
+    let by_tree = |entry| table.tree.as_ref().map(|tree| outer_probability(tree, entry));
+    for (index, (entry, pdf)) in (0..).zip(table.entries.iter().zip(&table.choice.pdf)) {
+        // By place: nothing that holds for the scene.
+        let chosen = match by_tree(index) {
+            None => percent(*pdf),
+            Some(None) => "chosen by place".into(),
+            Some(Some(pdf)) => percent(pdf),
+        };
         match entry {
             SampledLuminaire::Impulse(Luminaire::Point { position, intensity }) => rows.push(vec![
                 "point".into(),
                 format!("at {}", point(scene, *position)),
                 format!("intensity {}", rgb(*intensity)),
-                percent(*pdf),
+                chosen,
             ]),
             SampledLuminaire::Impulse(Luminaire::Infinite { direction, irradiance }) => rows.push(vec![
                 "infinite".into(),
                 format!("towards {}", rgb(*direction)),
                 format!("irradiance {}", rgb(*irradiance)),
-                percent(*pdf),
+                chosen,
             ]),
             SampledLuminaire::Environment => {
-                rows.push(vec!["environment".into(), String::new(), String::new(), percent(*pdf)]);
+                rows.push(vec!["environment".into(), String::new(), String::new(), chosen]);
             }
             SampledLuminaire::Area(triangle) => {
                 triangles += 1;
@@ -165,7 +173,22 @@ pub(super) fn luminaires(scene: &Scene) -> Vec<Vec<String>> {
     }
     if triangles > 0 {
         let what = format!("{triangles} emissive triangles");
-        rows.push(vec!["area".into(), what, format!("total area {area:.4}"), percent(chance)]);
+        rows.push(vec![
+            "area".into(),
+            what,
+            format!("total area {area:.4}"),
+            if table.tree.is_some() { "chosen by place".into() } else { percent(chance) },
+        ]);
+    }
+    if let Some(tree) = &table.tree {
+        let bytes = tree.nodes.len() * size_of::<LightNode>() + tree.paths.len() * size_of::<u64>();
+        let size = format!("{} in {}", counted(tree.nodes.len(), "node"), counted(tree.levels as usize, "level"));
+        rows.push(vec![
+            "light tree".into(),
+            size,
+            format!("{:.1} KiB", bytes as f64 / 1024.0),
+            percent(tree.probability),
+        ]);
     }
     if table.environment.is_none() && scene.environment.as_ref().is_some_and(Environment::emits) {
         let why = "even: not chosen, paths that escape find it".into();
@@ -175,6 +198,17 @@ pub(super) fn luminaires(scene: &Scene) -> Vec<Vec<String>> {
         rows.push(vec!["none: nothing in this scene emits".into()]);
     }
     rows
+}
+
+/// How often what stands beside a light tree is chosen; none: it is in the tree.
+fn outer_probability(tree: &LightTree, entry: u32) -> Option<f64> {
+    let outer = tree.outer.iter().position(|outer| *outer == Some(entry))?;
+    Some(tree.outer_choice.pdf[outer])
+}
+
+/// A number of things.
+fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
 /// A point of the scene in the coordinates of its files.

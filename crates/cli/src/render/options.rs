@@ -227,6 +227,7 @@ mod tests {
             ["--estimator", "photon"],
             ["--light-sampling", "some"],
             ["--area-sampling", "some"],
+            ["--light-choice", "some"],
             ["--directions", "some"],
             ["--extinction", "some"],
             ["--albedo-threshold", "1.5"],

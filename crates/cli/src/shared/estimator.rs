@@ -2,7 +2,8 @@
 
 use luminaire::glam::Vec3;
 use luminaire::scene::{
-    AreaSampling, Directions, Estimator, EstimatorChanges, Extinction, Integrator, LightSampling, Sampler, Scene,
+    AreaSampling, Directions, Estimator, EstimatorChanges, Extinction, Integrator, LightChoice, LightSampling, Sampler,
+    Scene,
 };
 use luminaire::{Error, Result};
 use serde::Deserialize;
@@ -36,6 +37,9 @@ pub struct EstimatorOptions {
     /// How a point on a lamp is chosen: area (evenly), solid-angle (evenly as seen, where the lamp is near).
     #[arg(long, value_name = "NAME", value_parser = named::<AreaSampling>)]
     pub area_sampling: Option<AreaSampling>,
+    /// How one of several luminaires is chosen: power, tree (by what may arrive), auto (the tree where it pays).
+    #[arg(long, value_name = "NAME", value_parser = named::<LightChoice>)]
+    pub light_choice: Option<LightChoice>,
     /// How the direction of indirect light is chosen: uniform, cosine or bsdf.
     #[arg(long, value_name = "NAME", value_parser = named::<Directions>)]
     pub directions: Option<Directions>,
@@ -86,6 +90,7 @@ impl EstimatorOptions {
         EstimatorChanges {
             light_sampling: self.light_sampling,
             area_sampling: self.area_sampling,
+            light_choice: self.light_choice,
             directions: self.directions,
             extinction: self.extinction,
             albedo_threshold: self.albedo_threshold,
@@ -98,6 +103,7 @@ impl EstimatorOptions {
         [
             ("--light-sampling", self.light_sampling.is_some()),
             ("--area-sampling", self.area_sampling.is_some()),
+            ("--light-choice", self.light_choice.is_some()),
             ("--directions", self.directions.is_some()),
             ("--extinction", self.extinction.is_some()),
             ("--albedo-threshold", self.albedo_threshold.is_some()),

@@ -10,7 +10,8 @@ use luminaire::backend::Backend;
 use luminaire::film::{Batch, Brightness, Tile};
 use luminaire::render::Tracer;
 use luminaire::scene::{
-    self, AreaSampling, Directions, Estimator, Extinction, Integrator, LightSampling, PRESETS, Sampler, Scene,
+    self, AreaSampling, Directions, Estimator, Extinction, Integrator, LightChoice, LightSampling, PRESETS, Sampler,
+    Scene,
 };
 use luminaire_measure::Workbench;
 use luminaire_measure::bench::rounds::Rounds;
@@ -94,6 +95,7 @@ fn rows(scene: &Scene) -> Vec<Row> {
         ("default, no light sampling", Estimator { light_sampling: LightSampling::None, ..default }),
         ("default, light sampling alone", Estimator { light_sampling: LightSampling::Direct, ..default }),
         ("default, luminaires by area", Estimator { area_sampling: AreaSampling::Area, ..default }),
+        ("default, luminaires by power", Estimator { light_choice: LightChoice::Power, ..default }),
         ("default, uniform directions", Estimator { directions: Directions::Uniform, ..default }),
         ("default, cosine directions", Estimator { directions: Directions::Cosine, ..default }),
         ("default, extinction by surface", Estimator { extinction: Extinction::Surface, ..default }),

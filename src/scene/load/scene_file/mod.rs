@@ -190,6 +190,7 @@ const INTEGRATOR: &str = "
 # estimator = \"default\"                  # a stage of the lecture by its name, see `luminaire render --help`; what follows changes parts of it
 # light_sampling = \"mis\"                 # \"none\", \"direct\", \"mis\"
 # area_sampling = \"solid-angle\"          # \"area\", \"solid-angle\"
+# light_choice = \"auto\"                # which of several luminaires: \"power\", \"tree\", \"auto\" (the tree where it pays)
 # directions = \"bsdf\"                    # \"uniform\", \"cosine\", \"bsdf\"
 # extinction = \"throughput\"              # how chance ends a path: \"off\", \"literal\", \"surface\", \"throughput\"
 # albedo_threshold = 0                   # a path whose combined albedo falls below this ends, 0 to 1

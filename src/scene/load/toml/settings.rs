@@ -193,6 +193,7 @@ impl File<'_> {
         let estimator = EstimatorChanges {
             light_sampling: table.light_sampling.as_ref().map(|part| *part.get_ref()),
             area_sampling: table.area_sampling.as_ref().map(|part| *part.get_ref()),
+            light_choice: table.light_choice.as_ref().map(|part| *part.get_ref()),
             directions: table.directions.as_ref().map(|part| *part.get_ref()),
             extinction: table.extinction.as_ref().map(|part| *part.get_ref()),
             albedo_threshold: table.albedo_threshold.as_ref().map(|part| part.get_ref().0),
@@ -208,10 +209,11 @@ impl File<'_> {
 }
 
 /// The keys that belong to the path tracer alone.
-fn parts(table: &IntegratorTable) -> [(&'static str, Option<Range<usize>>); 6] {
+fn parts(table: &IntegratorTable) -> [(&'static str, Option<Range<usize>>); 7] {
     [
         ("light_sampling", table.light_sampling.as_ref().map(Spanned::span)),
         ("area_sampling", table.area_sampling.as_ref().map(Spanned::span)),
+        ("light_choice", table.light_choice.as_ref().map(Spanned::span)),
         ("directions", table.directions.as_ref().map(Spanned::span)),
         ("extinction", table.extinction.as_ref().map(Spanned::span)),
         ("albedo_threshold", table.albedo_threshold.as_ref().map(Spanned::span)),

@@ -4,7 +4,7 @@ use super::values::{
     Albedo, Angle, Blades, Bounces, Colour, Eta, Exact, Exponent, Exposure, FilterRadius, Finite, Fov, MapOffset,
     MapScale, Matrix, NotNegative, Pixels, Positive, Probability, Samples, Shift, Triple, Unit,
 };
-use crate::scene::{AreaSampling, Directions, Extinction, Filter, LightSampling, Sampler, Tone};
+use crate::scene::{AreaSampling, Directions, Extinction, Filter, LightChoice, LightSampling, Sampler, Tone};
 use ::toml::Spanned;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{MapAccess, SeqAccess, Visitor};
@@ -128,6 +128,7 @@ pub(super) struct IntegratorTable {
     pub estimator: Option<Spanned<String>>,
     pub light_sampling: Option<Spanned<LightSampling>>,
     pub area_sampling: Option<Spanned<AreaSampling>>,
+    pub light_choice: Option<Spanned<LightChoice>>,
     pub directions: Option<Spanned<Directions>>,
     pub extinction: Option<Spanned<Extinction>>,
     pub albedo_threshold: Option<Spanned<Unit>>,

@@ -1,0 +1,185 @@
+//! The choice of a luminaire by the light tree: down from the root with one random number, each child in proportion to what may arrive of it.
+//!
+//! The number is a whole one below the width of what is still possible, and a node cuts that width: what is left at the leaf, over the whole, is
+//! the probability to the last number. Where few numbers are left, further bits come from a second random number.
+
+use super::prepared_scene::Reference;
+use super::surfel::Surfel;
+use crate::scene::light_tree::{CHILDREN, LEAF, LightNode};
+use crate::scene::{LightChoice, LightTree};
+use glam::DVec3;
+
+/// What is added to a ball's apparent size against the surface's horizon, for rounding.
+pub const HORIZON_MARGIN: f64 = 1e-4;
+/// The ball's radius over its distance counts at most as this.
+pub const MOST_SINE: f64 = 2.0;
+/// What may contribute is chosen at least by this much of the strongest.
+pub const LEAST_IMPORTANCE: f64 = 1e-24;
+/// A squared distance is at least this.
+pub const LEAST_DISTANCE2: f64 = 1e-37;
+/// What the inner side of a closed lamp counts, which is seen from within it alone.
+pub const INNER_SIDE: f64 = 1.0 / 32.0;
+/// Fewer numbers than these get further bits.
+pub const LEAST_WIDTH: u32 = 1 << 24;
+/// The largest fraction of 2^32 that is also an `f32`.
+pub const LAST_FRACTION: f64 = 4_294_967_040.0;
+/// A choice among more numbers than these is none: it never happens, and one over its probability might not be a number.
+pub const MOST_NUMBERS: f64 = 1e30;
+
+/// What is left of the random number on the way down.
+struct Numbers {
+    /// How many are possible still.
+    width: u32,
+    /// How many those at the root were, in units of what is left.
+    whole: f64,
+    /// Which of them it is.
+    number: u32,
+    /// Further bits.
+    more: u32,
+}
+
+impl Numbers {
+    /// Makes sure that there are enough to cut.
+    fn renew(&mut self) {
+        while self.width < LEAST_WIDTH {
+            self.width <<= 8;
+            self.number = self.number << 8 | self.more >> 24;
+            self.more = self.more.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
+            self.whole *= 256.0;
+        }
+    }
+
+    /// Takes those of a child.
+    fn take(&mut self, cuts: [u32; 3], child: usize) {
+        let begin = if child == 0 { 0 } else { cuts[child - 1] };
+        let end = if child == 3 { self.width } else { cuts[child] };
+        self.width = end - begin;
+        self.number = self.number.wrapping_sub(begin);
+    }
+}
+
+/// The mean of a cosine's positive part, where it may be off by `spread`: itself far above the horizon, 0 far below.
+fn facing(cosine: f64, spread: f64) -> f64 {
+    if cosine >= spread {
+        return cosine;
+    }
+    let above = (cosine + spread).max(0.0);
+    above * above / (4.0 * spread)
+}
+
+/// How much light of each child of a node may arrive at a surface with this normal, relative to each other; 0: surely none.
+pub fn light_importances(position: DVec3, normal: DVec3, node: &LightNode) -> [f64; CHILDREN] {
+    let children: [_; CHILDREN] = std::array::from_fn(|number| node.child(number));
+    let to_child = children.map(|child| child.center.as_dvec3() - position);
+    let distance2 = to_child.map(|d| d.length_squared().max(LEAST_DISTANCE2));
+    let near: [f64; CHILDREN] =
+        std::array::from_fn(|i| distance2[i].max(f64::from(children[i].radius) * f64::from(children[i].radius)));
+    let nearest = near.iter().fold(f64::INFINITY, |least, near| least.min(*near));
+    std::array::from_fn(|i| {
+        let child = &children[i];
+        let inverse = distance2[i].sqrt().recip();
+        let sine = (f64::from(child.radius) * inverse).min(MOST_SINE);
+        let incident = facing(normal.dot(to_child[i]) * inverse, sine + HORIZON_MARGIN);
+        let mut cosine = -child.axis.dot(to_child[i]) * inverse;
+        if child.spread.two_sided {
+            cosine = cosine.abs();
+        }
+        let spread = sine + child.spread.sine;
+        let inner = if child.closed { INNER_SIDE * facing(-cosine, spread) } else { 0.0 };
+        let emitted = if child.spread.sine >= 1.0 { 1.0 } else { facing(cosine, spread).max(inner) };
+        if child.strength == 0.0 || incident == 0.0 || emitted == 0.0 {
+            return 0.0;
+        }
+        (f64::from(child.strength) * (nearest / near[i]) * incident * emitted).max(LEAST_IMPORTANCE)
+    })
+}
+
+/// Where the numbers of a node's second, third and fourth child begin: each has one at least. None: nothing of the node can contribute.
+fn light_cuts(importances: [f64; CHILDREN], width: u32) -> Option<[u32; 3]> {
+    let [a, b, c, d] = importances;
+    let sums = [a, a + b, a + b + c];
+    let total = sums[2] + d;
+    if !(total > 0.0) {
+        return None;
+    }
+    let usable = u64::from(width - CHILDREN as u32);
+    Some(std::array::from_fn(|i| {
+        let fraction = (sums[i] / total * LAST_FRACTION) as u32;
+        (usable * u64::from(fraction) >> 32) as u32 + i as u32 + 1
+    }))
+}
+
+impl Reference {
+    /// The tree, if luminaires are chosen by it.
+    pub fn light_tree(&self) -> Option<&LightTree> {
+        self.luminaires.tree.as_ref().filter(|_| self.scene.integrator.estimator().light_choice != LightChoice::Power)
+    }
+
+    /// Index of a luminaire, chosen by number 2 of `random`, for which number 3 has further bits; the probability of that, and the one that the
+    /// power heuristic is given. None if there is none, or if nothing can contribute to this surface.
+    pub fn choose_luminaire(&self, surfel: &Surfel, random: [u32; 4]) -> Option<(usize, f64, f64)> {
+        let Some(tree) = self.light_tree() else {
+            if self.luminaires.entries.is_empty() {
+                return None;
+            }
+            let chosen = self.luminaires.choice.choose(random[2]);
+            return Some((chosen, self.luminaires.choice.pdf[chosen], self.luminaires.ideal_probability(chosen)));
+        };
+        let slots = &tree.outer_choice.slots;
+        let product = u64::from(random[2]) * slots.len() as u64;
+        let (slot, number) = ((product >> 32) as usize, product as u32);
+        let (threshold, alias) = slots[slot];
+        let own = number < threshold;
+        let outer = if own { slot } else { alias as usize };
+        if let Some(entry) = tree.outer[outer] {
+            let probability = tree.outer_choice.pdf[outer];
+            return Some((entry as usize, probability, probability));
+        }
+        let (number, width) = if own { (number, threshold) } else { (number - threshold, threshold.wrapping_neg()) };
+        // None is all of them.
+        let width = if width == 0 { u32::MAX } else { width };
+        let number = number.min(width - 1);
+        let mut numbers = Numbers { width, whole: width.into(), number, more: random[3] };
+        let mut node = &tree.nodes[0];
+        loop {
+            numbers.renew();
+            let cuts = light_cuts(light_importances(surfel.position, surfel.shading_normal, node), numbers.width)?;
+            let child = cuts.iter().filter(|cut| numbers.number >= **cut).count();
+            numbers.take(cuts, child);
+            let link = node.link[child];
+            if node.strength[child] == 0.0 || numbers.whole > MOST_NUMBERS {
+                return None;
+            }
+            if link & LEAF != 0 {
+                let probability = tree.probability * f64::from(numbers.width) / numbers.whole;
+                return Some(((link & !LEAF) as usize, probability, probability));
+            }
+            node = &tree.nodes[link as usize];
+        }
+    }
+
+    /// The probability with which [`Reference::choose_luminaire`] gives an emissive triangle, by the tree, seen from a surface.
+    pub fn tree_probability(&self, tree: &LightTree, from: &Surfel, object: u32, triangle: u32) -> f64 {
+        let Some(mut path) = tree.path(&self.scene, object, triangle) else { return 0.0 };
+        let mut numbers = Numbers { width: u32::MAX, whole: u32::MAX.into(), number: 0, more: 0 };
+        let mut node = &tree.nodes[0];
+        loop {
+            numbers.renew();
+            let Some(cuts) = light_cuts(light_importances(from.position, from.shading_normal, node), numbers.width)
+            else {
+                return 0.0;
+            };
+            let child = (path & 3) as usize;
+            path >>= 2;
+            numbers.take(cuts, child);
+            if numbers.whole > MOST_NUMBERS {
+                return 0.0;
+            }
+            let link = node.link[child];
+            if link & LEAF != 0 {
+                return tree.probability * f64::from(numbers.width) / numbers.whole;
+            }
+            node = &tree.nodes[link as usize];
+        }
+    }
+}
