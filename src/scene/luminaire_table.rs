@@ -155,8 +155,8 @@ impl LuminaireTable {
 }
 
 /// How much of a sky's mean radiance is left to paths that escape. Where they go by the BSDF, and nothing but Russian roulette by the whole path
-/// ends them, they find an even sky better than light sampling does. The lobes of a surface share its paths, so that a weak one has few: there half
-/// of the mean is sampled.
+/// ends them, they find an even sky better than light sampling does. The lobes of a surface share its paths, so that a weak one has few: there a
+/// quarter of the mean is sampled.
 fn left_to_paths(scene: &Scene, integrator: &Integrator) -> f64 {
     let Estimator { light_sampling, directions, extinction, albedo_threshold, .. } = integrator.estimator();
     let found = light_sampling == LightSampling::Mis
@@ -167,7 +167,7 @@ fn left_to_paths(scene: &Scene, integrator: &Integrator) -> f64 {
     let several = |m: &Material| lobes(m).into_iter().filter(|has| *has).count() > 1;
     match found {
         false => 0.0,
-        true if scene.materials.iter().any(several) => 0.5,
+        true if scene.materials.iter().any(several) => 0.75,
         true => 1.0,
     }
 }

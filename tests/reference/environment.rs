@@ -192,7 +192,7 @@ fn what_paths_find_well_is_left_to_them() {
     assert_eq!(share(&even), 0.0);
     let mut plates = even.clone();
     plates.materials[0].glossy = Vec3::splat(0.25);
-    assert!((share(&plates) - 0.5).abs() < 1e-6);
+    assert!((share(&plates) - 0.25).abs() < 1e-6);
     let all = Estimator::default();
     for other in [
         Estimator { light_sampling: LightSampling::Direct, ..all },
