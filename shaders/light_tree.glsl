@@ -52,7 +52,7 @@ vec4 light_importances(vec3 p, vec3 n, uint node) {
     spread = sine + abs(spread);
     vec4 inner = mix(vec4(0.0), INNER_SIDE * facing(-cosine, spread), lessThan(strength, vec4(0.0)));
     strength = abs(strength);
-    vec4 emitted = mix(max(facing(cosine, spread), inner), vec4(1.0), greaterThanEqual(axis_z_spread >> 16, ivec4(32767)));
+    vec4 emitted = mix(max(facing(cosine, spread), inner), 1.0 + cosine, greaterThanEqual(axis_z_spread >> 16, ivec4(32767)));
     vec4 importance = max(strength * (nearest / near) * incident * emitted, LEAST_IMPORTANCE);
     bvec4 none = lessThanEqual(min(min(incident, emitted), strength), vec4(0.0));
     return mix(importance, vec4(0.0), none);

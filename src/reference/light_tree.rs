@@ -86,7 +86,7 @@ pub fn light_importances(position: DVec3, normal: DVec3, node: &LightNode) -> [f
         }
         let spread = sine + child.spread.sine;
         let inner = if child.closed { INNER_SIDE * facing(-cosine, spread) } else { 0.0 };
-        let emitted = if child.spread.sine >= 1.0 { 1.0 } else { facing(cosine, spread).max(inner) };
+        let emitted = if child.spread.sine >= 1.0 { 1.0 + cosine } else { facing(cosine, spread).max(inner) };
         if child.strength == 0.0 || incident == 0.0 || emitted == 0.0 {
             return 0.0;
         }

@@ -48,7 +48,7 @@ pub struct Child {
     pub radius: f32,
     /// Relative intensity.
     pub strength: f32,
-    /// Axis of the normals.
+    /// Unit axis of the normals; where they may be anywhere, shorter: their light is one and the scalar product with this of the mean.
     pub axis: DVec3,
     /// Around it.
     pub spread: Spread,
@@ -62,6 +62,8 @@ const CONE_MARGIN: f64 = 1e-3;
 const WIDE: f64 = 0.95;
 /// A relative margin of radii, far above the rounding of distances in `f32`.
 const RADIUS_MARGIN: f64 = 1e-5;
+/// How much more than the mean light may go one way where normals look everywhere.
+const MOST_LEANING: f64 = 0.9;
 /// What is left of the weakest next to the strongest, so that `f32` still has it.
 const LEAST_STRENGTH: f64 = 1e-20;
 
@@ -144,7 +146,11 @@ pub(super) fn child(group: &[Source], strongest: f64) -> Child {
         (_, true) => 0.5,
         (_, false) => 0.25,
     };
-    let intensity = if wide { group.iter().map(|s| s.strength * share(s)).sum() } else { strength(group) };
+    let intensity: f64 = if wide { group.iter().map(|s| s.strength * share(s)).sum() } else { strength(group) };
+    // The mean of a cosine's positive part over normals that look everywhere, to first order: a quarter, and half the cosine with their mean.
+    let one_way = group.iter().filter(|source| !source.turns()).map(|source| source.strength * source.normal);
+    let mean = one_way.fold(DVec3::ZERO, |sum, normal| sum + normal);
+    let axis = if wide { mean.normalize_or_zero() * (0.5 * mean.length() / intensity).min(MOST_LEANING) } else { axis };
     Child {
         center,
         radius,
