@@ -25,6 +25,11 @@ const FIREFLY_CONTRAST: f64 = 5.0;
 /// or this part of the picture's half-power mean where they are darker.
 const FIREFLY_FLOOR: f64 = 1e-3;
 
+/// What a promise about the error allows for each pixel that is a firefly, as a part of all: a picture with many of them has not yet seen all of its light.
+const CARE_FOR_FIREFLIES: f64 = 10.0;
+/// What it allows at most for chance where few pixels hold the error.
+const MOST_CARE: f64 = 1.25;
+
 /// A standard error of this part of the picture's half-power mean is none; it keeps weights finite where nothing varies.
 const TINY: f64 = 1e-15;
 
@@ -62,6 +67,15 @@ impl Film {
     /// The estimated error of the picture; none if no pixel has samples in two blocks, or the picture is black but for its fireflies.
     pub fn error(&self) -> Option<ErrorEstimate> {
         self.estimate(|_, _| {})?.0
+    }
+
+    /// The estimated squared relative error of every pixel from its own samples alone, fireflies among them; none where [`Film::error`] has none.
+    pub(crate) fn own_errors(&self) -> Option<Vec<f64>> {
+        let mut errors = Vec::new();
+        let square =
+            |pixel: &PixelError, brightness| relative_squares(brightness, pixel.own_variance, pixel.radiance) / 3.0;
+        let (total, _) = self.estimate(|pixel, brightness| errors.push(square(pixel, brightness)))?;
+        total.map(|_| errors)
     }
 
     /// The estimated error of every pixel; none if no pixel has samples in two blocks.
@@ -113,6 +127,7 @@ impl Film {
         }
 
         let (mut square, mut relative_square, mut left_out, mut counted) = (0.0, 0.0, 0.0, 0u64);
+        let (mut naive, mut fourth_power) = (0.0, 0.0);
         for pixel in bands(self.contrasts(convergence)) {
             take(&pixel, brightness);
             if pixel.firefly {
@@ -120,13 +135,23 @@ impl Film {
             } else {
                 counted += 1;
                 square += pixel.own_variance.iter().sum::<f64>();
-                relative_square += relative_squares(brightness, pixel.own_variance, pixel.radiance);
+                let relative = relative_squares(brightness, pixel.own_variance, pixel.radiance);
+                relative_square += relative;
+                fourth_power += relative * relative;
+                naive += relative_squares(brightness, pixel.naive_variance, pixel.radiance);
             }
         }
+        let fireflies = all - counted - unknown;
+        // As if the error were spread evenly over so many pixels: their squared errors, each with one degree of freedom, make up the true one.
+        let even_pixels =
+            if fourth_power > 0.0 { relative_square * relative_square / fourth_power } else { f64::INFINITY };
+        let chance = (2.0 / even_pixels).sqrt().exp().min(MOST_CARE);
+        let care = chance * (1.0 + CARE_FOR_FIREFLIES * fireflies as f64 / all as f64);
         let total = (!brightness.is_black()).then(|| ErrorEstimate {
             rmse: (square / (3 * counted) as f64).sqrt(),
             rel_mse: relative_square / (3 * counted) as f64,
-            fireflies: all - counted - unknown,
+            careful_rel_mse: care * (relative_square * naive).sqrt() / (3 * counted) as f64,
+            fireflies,
             unknown,
             rel_mse_with_fireflies: (relative_square + left_out) / (3 * (all - unknown)) as f64,
         });
@@ -208,6 +233,7 @@ impl Film {
             PixelError {
                 variance: colours(variance),
                 own_variance: colours(channels.map(|m| m.variance)),
+                naive_variance: colours(channels.map(|m| m.naive)),
                 radiance,
                 halves: [0, 1, 2].map(relative),
                 expected: colours(*expected),
@@ -251,6 +277,8 @@ struct PixelError {
     variance: [f64; 3],
     /// From its own samples alone.
     own_variance: [f64; 3],
+    /// The same if samples were independent.
+    naive_variance: [f64; 3],
     /// As far as it is known ([`plausible`]).
     radiance: [f64; 3],
     /// The radiance that its neighbours lead to expect.
@@ -441,7 +469,14 @@ mod tests {
         assert_eq!((total.fireflies, total.unknown), (0, 1));
         assert!(errors.standard_error.iter().flatten().all(|e| e.is_finite()));
         let error = film(8, 0.0, |x, _| f64::from(x)).error().unwrap();
-        let nothing = ErrorEstimate { rmse: 0.0, rel_mse: 0.0, fireflies: 0, unknown: 0, rel_mse_with_fireflies: 0.0 };
+        let nothing = ErrorEstimate {
+            rmse: 0.0,
+            rel_mse: 0.0,
+            careful_rel_mse: 0.0,
+            fireflies: 0,
+            unknown: 0,
+            rel_mse_with_fireflies: 0.0,
+        };
         assert_eq!(error, nothing);
     }
 

@@ -1,6 +1,7 @@
 //! What a render did so far.
 
 use super::progress::{LEAST_FOR_NOISE, Progress};
+use super::shares::Shares;
 use super::tracer::Traced;
 use crate::film::{Batch, Film, SampleId};
 use crate::picture::Crop;
@@ -42,6 +43,8 @@ pub struct Rendered {
     pub device_seconds: f64,
     /// The number of samples at which a limit of the noise is looked at next.
     pub noise_aim: u32,
+    /// How many times that number each tile gets, where a limit of the noise has found that they should differ.
+    pub shares: Option<Shares>,
     /// Why the last run ended.
     pub end: End,
 }
@@ -62,6 +65,7 @@ impl Rendered {
             dropped_samples: Vec::new(),
             device_seconds: 0.0,
             noise_aim: LEAST_FOR_NOISE,
+            shares: None,
             end: End::Stopped,
         })
     }
@@ -101,14 +105,21 @@ impl Rendered {
         self.progress.seconds += next.progress.seconds;
     }
 
-    /// Estimates the error and says whether it is below `limit`; if not, when to look again. Only where all pixels have
-    /// [`Rendered::noise_aim`] samples.
-    pub(super) fn quiet_enough(&mut self, limit: f64) -> bool {
+    /// Estimates the error and says whether it is below `limit`; if not, when to look again, and, if `adaptive`, whether tiles are to have different
+    /// shares from now on. Only where all pixels have [`Rendered::noise_aim`] samples, or their share of it.
+    pub(super) fn quiet_enough(&mut self, limit: f64, adaptive: bool) -> bool {
         self.progress.error = self.film.error();
         // No estimate at all: no light was found, or every sample was lost.
-        let relative = self.progress.error.map_or(f64::INFINITY, |error| error.relative());
+        let relative = self.progress.error.map_or(f64::INFINITY, |error| error.careful());
         if relative > limit {
-            self.noise_aim = samples_to_reach(self.noise_aim, relative, limit);
+            let may_differ =
+                adaptive && self.shares.is_none() && self.noise_aim.is_power_of_two() && self.film.first_sample == 0;
+            let shares = if may_differ { Shares::of(&self.film, (relative / limit).powi(2)) } else { None };
+            match shares {
+                // The smallest share is there already.
+                Some(shares) => self.shares = Some(shares),
+                None => self.noise_aim = samples_to_reach(self.noise_aim, relative, limit),
+            }
         }
         relative <= limit
     }
@@ -118,13 +129,19 @@ pub(super) fn samples_of(batch: &Batch) -> u64 {
     batch.tile.pixels() as u64 * u64::from(batch.samples.end - batch.samples.start)
 }
 
-/// How many samples to take before the error is looked at again: those that bring it from `relative` to `limit`, and a little more, but
-/// at most as many again as there are. The estimate of an error from few samples is not to be relied on.
+/// How many samples to take before the error is looked at again: those that bring it from `relative` to `limit`, but at most as many again as there are, and a whole
+/// number of eighths of a power of two. The estimate of an error from few samples is not to be relied on, and who looks often meets one that is too small by chance.
 fn samples_to_reach(samples: u32, relative: f64, limit: f64) -> u32 {
     let needed = f64::from(samples) * (relative / limit).powi(2);
-    let least = samples.saturating_add(samples / 32 + 1);
     // Rust's `as` saturates.
-    ((1.01 * needed) as u32).clamp(least, samples.saturating_mul(2).max(least))
+    let wanted = (needed.ceil() as u32).clamp(samples.saturating_add(1), samples.saturating_mul(2));
+    at_a_look(wanted)
+}
+
+/// The least number of samples at which a limit of the noise is looked at that is not below this one.
+pub(super) fn at_a_look(samples: u32) -> u32 {
+    let eighth = 1 << samples.max(8).ilog2().saturating_sub(3);
+    samples.max(LEAST_FOR_NOISE).checked_next_multiple_of(eighth).unwrap_or(u32::MAX)
 }
 
 #[cfg(test)]
@@ -134,10 +151,15 @@ mod tests {
     #[test]
     fn the_next_look_at_the_noise() {
         // Four times the error needs sixteen times the samples, and is not believed at once.
-        assert_eq!(samples_to_reach(100, 0.4, 0.1), 200);
-        assert_eq!(samples_to_reach(100, 0.11, 0.1), 122);
-        assert_eq!(samples_to_reach(100, 0.1001, 0.1), 104);
-        assert_eq!(samples_to_reach(100, f64::INFINITY, 0.1), 200);
+        assert_eq!(samples_to_reach(96, 0.4, 0.1), 192);
+        assert_eq!(samples_to_reach(96, 0.11, 0.1), 120);
+        assert_eq!(samples_to_reach(96, 0.1001, 0.1), 104);
+        assert_eq!(samples_to_reach(96, f64::INFINITY, 0.1), 192);
+        assert_eq!(samples_to_reach(120, 0.11, 0.1), 160, "from 128 on sixteen by sixteen");
         assert_eq!(samples_to_reach(u32::MAX - 1, 0.2, 0.1), u32::MAX);
+        let looks: Vec<u32> =
+            std::iter::successors(Some(LEAST_FOR_NOISE), |n| Some(at_a_look(n + 1))).take(12).collect();
+        assert_eq!(looks, [32, 36, 40, 44, 48, 52, 56, 60, 64, 72, 80, 88]);
+        assert_eq!([0, 7, 33, 1000].map(at_a_look), [32, 32, 36, 1024]);
     }
 }
