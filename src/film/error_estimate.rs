@@ -8,8 +8,7 @@ pub struct ErrorEstimate {
     /// relMSE as [`REL_MSE`](crate::film::REL_MSE) defines it: it does not depend on the unit of the radiance.
     pub rel_mse: f64,
     /// What `rel_mse` is taken for where a promise depends on it, as a limit of the noise does: larger than `rel_mse`, and by more where that is less sure. The mean
-    /// (geometric) of `rel_mse` and of what it would be if samples were independent, times what chance may do where few pixels hold the error, and more where there are many
-    /// fireflies.
+    /// (geometric) of `rel_mse` and of what it would be if samples were independent, times what chance may do where few pixels hold the error.
     pub careful_rel_mse: f64,
     /// Pixels that are left out because they stand out of their neighbours by what few samples hold.
     pub fireflies: u64,

@@ -10,7 +10,7 @@ pub struct Limits {
     /// Seconds of wall-clock time, over all runs of a render, met at the next end of a batch.
     pub seconds: Option<f64>,
     /// Estimated relative error without the fireflies, as careful as a promise wants it ([`ErrorEstimate::careful`](crate::film::ErrorEstimate::careful)), met when all pixels
-    /// have equally many samples, at least [`LEAST_FOR_NOISE`] and an eighth, two eighths, ... more than a power of two. Where there is no estimate ([`MOST_WITHOUT_ESTIMATE`]) it ends the render, too.
+    /// have equally many samples, at least [`LEAST_FOR_NOISE`], and their blocks are whole. Where there is no estimate ([`MOST_WITHOUT_ESTIMATE`]) it ends the render, too.
     pub noise: Option<f64>,
     /// Whether a limit of the noise may give tiles of the picture different numbers of samples ([`Shares`](super::Shares)). `spp` is then that of a pixel in the mean.
     pub adaptive: bool,

@@ -3,7 +3,7 @@
 use super::progress::{LEAST_FOR_NOISE, Progress};
 use super::shares::Shares;
 use super::tracer::Traced;
-use crate::film::{Batch, Film, SampleId};
+use crate::film::{Batch, Blocks, Film, SampleId};
 use crate::picture::Crop;
 use crate::{Error, Result};
 
@@ -129,8 +129,8 @@ pub(super) fn samples_of(batch: &Batch) -> u64 {
     batch.tile.pixels() as u64 * u64::from(batch.samples.end - batch.samples.start)
 }
 
-/// How many samples to take before the error is looked at again: those that bring it from `relative` to `limit`, but at most as many again as there are, and a whole
-/// number of eighths of a power of two. The estimate of an error from few samples is not to be relied on, and who looks often meets one that is too small by chance.
+/// How many samples to take before the error is looked at again: those that bring it from `relative` to `limit`, but at most as many again as there are, and whole
+/// blocks. The estimate of an error from few samples is not to be relied on, and who looks often meets one that is too small by chance.
 fn samples_to_reach(samples: u32, relative: f64, limit: f64) -> u32 {
     let needed = f64::from(samples) * (relative / limit).powi(2);
     // Rust's `as` saturates.
@@ -138,10 +138,11 @@ fn samples_to_reach(samples: u32, relative: f64, limit: f64) -> u32 {
     at_a_look(wanted)
 }
 
-/// The least number of samples at which a limit of the noise is looked at that is not below this one.
+/// The least number of samples at which a limit of the noise is looked at that is not below this one: that of whole blocks, where both picture and estimate are better than
+/// between.
 pub(super) fn at_a_look(samples: u32) -> u32 {
-    let eighth = 1 << samples.max(8).ilog2().saturating_sub(3);
-    samples.max(LEAST_FOR_NOISE).checked_next_multiple_of(eighth).unwrap_or(u32::MAX)
+    let samples = samples.max(LEAST_FOR_NOISE);
+    samples.checked_next_multiple_of(Blocks::of(0..samples).length()).unwrap_or(u32::MAX)
 }
 
 #[cfg(test)]
@@ -152,14 +153,14 @@ mod tests {
     fn the_next_look_at_the_noise() {
         // Four times the error needs sixteen times the samples, and is not believed at once.
         assert_eq!(samples_to_reach(96, 0.4, 0.1), 192);
-        assert_eq!(samples_to_reach(96, 0.11, 0.1), 120);
-        assert_eq!(samples_to_reach(96, 0.1001, 0.1), 104);
+        assert_eq!(samples_to_reach(96, 0.11, 0.1), 128);
+        assert_eq!(samples_to_reach(96, 0.1001, 0.1), 112);
         assert_eq!(samples_to_reach(96, f64::INFINITY, 0.1), 192);
-        assert_eq!(samples_to_reach(120, 0.11, 0.1), 160, "from 128 on sixteen by sixteen");
+        assert_eq!(samples_to_reach(128, 0.11, 0.1), 160, "from there on by 32");
         assert_eq!(samples_to_reach(u32::MAX - 1, 0.2, 0.1), u32::MAX);
         let looks: Vec<u32> =
-            std::iter::successors(Some(LEAST_FOR_NOISE), |n| Some(at_a_look(n + 1))).take(12).collect();
-        assert_eq!(looks, [32, 36, 40, 44, 48, 52, 56, 60, 64, 72, 80, 88]);
-        assert_eq!([0, 7, 33, 1000].map(at_a_look), [32, 32, 36, 1024]);
+            std::iter::successors(Some(LEAST_FOR_NOISE), |n| Some(at_a_look(n + 1))).take(10).collect();
+        assert_eq!(looks, [32, 40, 48, 56, 64, 80, 96, 112, 128, 160]);
+        assert_eq!([0, 7, 33, 1000].map(at_a_look), [32, 32, 40, 1024]);
     }
 }

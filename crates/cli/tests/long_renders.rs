@@ -270,7 +270,7 @@ fn parts_in_any_order_are_the_whole() {
     assert_eq!(folder.bytes("a.exr"), folder.bytes("b.exr"));
     let (whole, merged) = (folder.picture("whole.exr"), folder.picture("a.exr"));
     assert!(furthest(&merged, &whole) < 1e-6, "{:e}", furthest(&merged, &whole));
-    // The error bar, too: every sample is still in its own independent part.
+    // The error bar, too: every sample is in the block where the whole has it.
     let (expected, found) = (whole.error.unwrap(), merged.error.unwrap());
     for (e, f) in expected.as_flattened().iter().zip(found.as_flattened()) {
         assert!((e - f).abs() <= 1e-5 * e, "{f} for {e}");

@@ -24,7 +24,7 @@ pub struct Stop {
     pub error: f64,
     /// Samples a pixel, averaged over the pixels.
     pub samples: f64,
-    /// The samples a pixel, the same for all, after which the error of this seed was first below the limit: looked at after every eighth of a power of two.
+    /// The samples a pixel, the same for all, after which the error of this seed was first below the limit: looked at after every eighth of the power of two below.
     pub oracle: f64,
 }
 
