@@ -407,6 +407,26 @@ mod tests {
     }
 
     #[test]
+    fn a_promise_is_more_careful_where_few_pixels_hold_the_error() {
+        let care = |film: &Film| {
+            let total = film.error().unwrap();
+            total.careful_rel_mse / total.rel_mse
+        };
+        let even = care(&film(64, 0.5, |_, _| 3.0));
+        assert!((1.0..1.1).contains(&even), "{even}");
+        // Noise in five pixels, which are not so much brighter that they would be fireflies.
+        let noisy = |pixel: usize| pixel % 800 == 7;
+        let mut few = film(64, 0.01, |_, _| 3.0);
+        for pixel in (0..few.pixels()).filter(|pixel| noisy(*pixel)) {
+            let sums = &mut few.sums[pixel];
+            (0..BLOCKS)
+                .for_each(|block| sums[block] = sums[block].map(|sum| sum * if block % 2 == 0 { 1.5 } else { 0.5 }));
+        }
+        let few = care(&few);
+        assert!((1.2..2.0).contains(&few), "{few}");
+    }
+
+    #[test]
     fn bands_do_not_show() {
         let wide = film(16, 0.5, |x, y| if (x * y) % 97 == 3 { 50.0 } else { 1.0 + f64::from(x % 3) });
         let contrasts = wide.contrasts(Convergence::INDEPENDENT);

@@ -148,6 +148,25 @@ pub(super) fn at_a_look(samples: u32) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::film::{PixelSum, Tile, group_length};
+    use crate::sampling::{random4, uniform};
+
+    #[test]
+    fn a_limit_of_the_noise_goes_by_the_careful_error() {
+        let mut rendered = Rendered::nothing((8, 8), 0).unwrap();
+        let tile = Tile { x: 0, y: 0, width: 8, height: 8 };
+        for sample in 0..LEAST_FOR_NOISE {
+            let value = |pixel: u32| 1.0 + uniform(random4(pixel, sample, 0, 5)[0]);
+            let sums: Vec<_> =
+                (0..64).map(|pixel| PixelSum { radiance: [value(pixel); 3], ..Default::default() }).collect();
+            rendered.film.add(&Batch { tile, samples: sample..sample + 1, group: group_length(0) }, &sums);
+        }
+        let error = rendered.film.error().unwrap();
+        assert!(error.careful() > 1.02 * error.relative(), "{error:?}");
+        assert!(!rendered.quiet_enough(1.01 * error.relative(), false) && rendered.noise_aim > LEAST_FOR_NOISE);
+        rendered.noise_aim = LEAST_FOR_NOISE;
+        assert!(rendered.quiet_enough(1.001 * error.careful(), false) && rendered.noise_aim == LEAST_FOR_NOISE);
+    }
 
     #[test]
     fn the_next_look_at_the_noise() {

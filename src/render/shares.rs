@@ -165,3 +165,75 @@ impl Shares {
         self.mean * f64::from(step)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::{Batch, PixelSum, Tile};
+    use crate::sampling::{random4, uniform};
+
+    const SIZE: (u32, u32) = (60, 44);
+
+    /// Radiance 1 with noise that `spread` tells of every pixel.
+    fn film(spread: impl Fn(u32, u32) -> f64) -> Film {
+        let mut film = Film::new(SIZE.0, SIZE.1).unwrap();
+        let tile = Tile { x: 0, y: 0, width: SIZE.0, height: SIZE.1 };
+        for sample in 0..64 {
+            let value = |pixel: u32| {
+                1.0 + spread(pixel % SIZE.0, pixel / SIZE.0) * (uniform(random4(pixel, sample, 0, 3)[0]) - 0.5)
+            };
+            let sums: Vec<_> = (0..SIZE.0 * SIZE.1)
+                .map(|pixel| PixelSum { radiance: [value(pixel); 3], ..PixelSum::default() })
+                .collect();
+            film.add(&Batch { tile, samples: sample..sample + 1, group: 1 }, &sums);
+        }
+        film
+    }
+
+    #[test]
+    fn shares_go_as_the_error_of_the_tiles_around() {
+        let halves = |x: u32, _| if x < 32 { 0.1 } else { 0.8 };
+        let shares = Shares::of(&film(halves), 4.0).unwrap();
+        // Eight columns of six rows; eight times the noise, eight times the samples.
+        assert_eq!(shares.tiles(), 48);
+        let log = |x: usize, y: usize| shares.logs()[y * 8 + x];
+        assert!((0..6).all(|y| log(7, y) == log(0, y) + 3 && log(1, y) == log(0, y)), "{:?}", shares.logs());
+        assert_eq!((shares.samples(0, 40), shares.samples_of_pixel(59, 40)), (40 << log(0, 0), 40 << log(7, 0)));
+        let mean = (0..SIZE.0 * SIZE.1).map(|pixel| shares.samples_of_pixel(pixel as usize, 1)).sum::<u32>();
+        assert!((shares.mean_samples(1) - f64::from(mean) / f64::from(SIZE.0 * SIZE.1)).abs() < 1e-9);
+        // One tile alone among quiet ones gets what they get, and they more.
+        let lonely = |x: u32, y: u32| if (x / 8, y / 8) == (3, 2) { 3.0 } else { 0.1 };
+        let shares = Shares::of(&film(lonely), 4.0).unwrap();
+        let log = |x: usize, y: usize| shares.logs()[y * 8 + x];
+        assert!(log(3, 2) == 0 && log(2, 1) > 1 && log(4, 3) > 1, "{:?}", shares.logs());
+    }
+
+    #[test]
+    fn an_even_picture_stays_even_and_so_does_one_that_is_nearly_done() {
+        assert_eq!(Shares::of(&film(|_, _| 0.5), 4.0), None);
+        let halves = film(|x, _| if x < 32 { 0.1 } else { 0.8 });
+        assert!(Shares::of(&halves, 7.9).is_some());
+        assert!([1.5, 8.0, f64::INFINITY, f64::NAN].iter().all(|ahead| Shares::of(&halves, *ahead).is_none()));
+        assert_eq!(Shares::of(&film(|_, _| 0.0), 4.0), None, "nothing to tell apart");
+    }
+
+    #[test]
+    fn only_what_a_render_comes_to_is_allowed() {
+        let logs: Vec<u8> = (0..48).map(|tile| tile % 5).collect();
+        let shares = Shares::from_logs(SIZE, logs.clone()).unwrap();
+        let each = |step: u32| -> Vec<u32> { (0..60 * 44).map(|pixel| shares.samples_of_pixel(pixel, step)).collect() };
+        assert_eq!(Shares::of_pixels(SIZE, &each(1)), Some(shares.clone()));
+        assert!(shares.allow(&each(32), 32) && shares.allow(&each(32), 40) && shares.allow(&[32; 60 * 44], 32));
+        assert!(!shares.allow(&each(40), 32) && !shares.allow(&[28; 60 * 44], 32));
+        let with = |pixel: usize, samples: u32| {
+            let mut wrong = each(32);
+            wrong[pixel] = samples;
+            wrong
+        };
+        assert!(!shares.allow(&with(61, 36), 64), "within a tile");
+        assert!(!shares.allow(&vec![34; 60 * 44], 64), "within a group");
+        assert_eq!(Shares::of_pixels(SIZE, &with(61, 32)), None);
+        assert_eq!((Shares::of_pixels(SIZE, &[0; 60 * 44]), Shares::of_pixels(SIZE, &[3; 60 * 44])), (None, None));
+        assert_eq!((Shares::from_logs(SIZE, vec![0; 47]), Shares::from_logs(SIZE, vec![5; 48])), (None, None));
+    }
+}
