@@ -225,13 +225,18 @@ impl Film {
                 || grey.naive > FIREFLY_VARIANCE * grey.mean * grey.mean
                     && grey.mean > FIREFLY_CONTRAST * (expected + FIREFLY_FLOOR * half_power_mean)
         });
+        // By which the others count, whatever the unit of the light.
+        let unit = (half_power_mean * half_power_mean).max(f64::MIN_POSITIVE);
+        let certainty = Rows::new(rows(1), |pixel| {
+            pooled.at(pixel).map(|variance| ((variance + tiny) / unit).powf(NEIGHBOURS_POWER))
+        });
         let pixels = Rows::new(rows(0), |pixel| {
             let Own { channels, known } = own.at(pixel);
             // What the others say about a pixel, without fireflies; where all of them are, as above.
             let expected: [f64; 4] = std::array::from_fn(|c| {
                 let (mut sum, mut weights) = (0.0, 0.0);
                 for j in self.around(pixel).filter(|j| *j != pixel && !firefly.at(*j)) {
-                    let weight = ((pooled.at(j)[c] + tiny) / (pooled.at(pixel)[c] + tiny)).powf(NEIGHBOURS_POWER);
+                    let weight = certainty.at(j)[c];
                     sum += weight * own.at(j).channels[c].mean;
                     weights += weight;
                 }
