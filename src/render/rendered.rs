@@ -115,6 +115,8 @@ impl Rendered {
             let may_differ =
                 adaptive && self.shares.is_none() && self.noise_aim.is_power_of_two() && self.film.first_sample == 0;
             let shares = if may_differ { Shares::of(&self.film, (relative / limit).powi(2)) } else { None };
+            let most = f64::from(self.progress.limits.spp.unwrap_or(u32::MAX));
+            let shares = shares.filter(|shares| shares.mean_samples(self.noise_aim) <= most);
             match shares {
                 // The smallest share is there already.
                 Some(shares) => self.shares = Some(shares),

@@ -193,7 +193,7 @@ mod tests {
     #[test]
     fn shares_go_as_the_error_of_the_tiles_around() {
         let halves = |x: u32, _| if x < 32 { 0.1 } else { 0.8 };
-        let shares = Shares::of(&film(halves), 4.0).unwrap();
+        let shares = Shares::of(&film(halves), 7.9).unwrap();
         // Eight columns of six rows; eight times the noise, eight times the samples.
         assert_eq!(shares.tiles(), 48);
         let log = |x: usize, y: usize| shares.logs()[y * 8 + x];
