@@ -153,6 +153,14 @@ MUTATIONS = [
     ("vertex colours of the first corner", "src/reference/hit.rs",
      "    interpolate(weights, triangle.vertices.map(|v| mesh.colours[v as usize].as_dvec3()))",
      "    mesh.colours[triangle.vertices[0] as usize].as_dvec3()", [REFERENCE]),
+    ("tiles that decide on their own samples", "src/render/shares.rs",
+     "if other != tile {", "if other == tile {", [LIBRARY]),
+    ("shares by the square of what they should be", "src/render/shares.rs",
+     "(0.5 * error.log2() + scale)", "(error.log2() + scale)", [LIBRARY]),
+    ("a checkpoint that forgets its shares", "src/part/file.rs",
+     "    rendered.shares = shares;\n", "", [["--test", "adaptive"]]),
+    ("a promise by the estimate as it is", "src/render/rendered.rs",
+     "map_or(f64::INFINITY, |error| error.careful());", "map_or(f64::INFINITY, |error| error.relative());", [LIBRARY]),
 ]
 
 

@@ -25,6 +25,9 @@ const FIREFLY_CONTRAST: f64 = 5.0;
 /// or this part of the picture's half-power mean where they are darker.
 const FIREFLY_FLOOR: f64 = 1e-3;
 
+/// What a promise about the error allows at most for chance, where few pixels hold the error.
+const MOST_CARE: f64 = 1.25;
+
 /// A pixel's neighbours count by this power of the variance around them, where they say what radiance it should have. By -1 they would have the least variance if they
 /// had one radiance; but where it varies, or their variances are badly known, that is mostly too dark, since the dark ones have the least variance. Of -0.6 to -1 this
 /// one gave the best estimates in the ten scenes of `docs/accuracy.md`.
@@ -67,6 +70,15 @@ impl Film {
     /// The estimated error of the picture; none if no pixel has samples in two blocks, or the picture is black but for its fireflies.
     pub fn error(&self) -> Option<ErrorEstimate> {
         self.estimate(|_, _| {})?.0
+    }
+
+    /// The estimated squared relative error of every pixel from its own samples alone, fireflies among them; none where [`Film::error`] has none.
+    pub(crate) fn own_errors(&self) -> Option<Vec<f64>> {
+        let mut errors = Vec::new();
+        let square =
+            |pixel: &PixelError, brightness| relative_squares(brightness, pixel.own_variance, pixel.radiance) / 3.0;
+        let (total, _) = self.estimate(|pixel, brightness| errors.push(square(pixel, brightness)))?;
+        total.map(|_| errors)
     }
 
     /// The estimated error of every pixel; none if no pixel has samples in two blocks.
@@ -116,6 +128,7 @@ impl Film {
         }
 
         let (mut square, mut relative_square, mut left_out, mut counted) = (0.0, 0.0, 0.0, 0u64);
+        let (mut naive, mut fourth_power) = (0.0, 0.0);
         for pixel in self.bands(with_fireflies, &self.contrasts(convergence)) {
             take(&pixel, brightness);
             if pixel.firefly {
@@ -123,14 +136,23 @@ impl Film {
             } else {
                 counted += 1;
                 square += pixel.own_variance.iter().sum::<f64>();
-                relative_square += relative_squares(brightness, pixel.own_variance, pixel.radiance);
+                let relative = relative_squares(brightness, pixel.own_variance, pixel.radiance);
+                relative_square += relative;
+                fourth_power += relative * relative;
+                naive += relative_squares(brightness, pixel.naive_variance, pixel.radiance);
             }
         }
+        let fireflies = all - counted - unknown;
+        // As if the error were spread evenly over so many pixels: their squared errors, each with one degree of freedom, make up the true one.
+        let even_pixels =
+            if fourth_power > 0.0 { relative_square * relative_square / fourth_power } else { f64::INFINITY };
+        let care = (2.0 / even_pixels).sqrt().exp().min(MOST_CARE);
         let total = (!brightness.is_black()).then(|| ErrorEstimate {
             // What is bright converges in its own way.
             rmse: (absolute.variance().unwrap_or(square / counted as f64) / 3.0).sqrt(),
             rel_mse: relative_square / (3 * counted) as f64,
-            fireflies: all - counted - unknown,
+            careful_rel_mse: care * (relative_square * naive).sqrt() / (3 * counted) as f64,
+            fireflies,
             unknown,
             rel_mse_with_fireflies: (relative_square + left_out) / (3 * (all - unknown)) as f64,
         });
@@ -237,6 +259,7 @@ impl Film {
             PixelError {
                 variance: colours(variance),
                 own_variance: colours(channels.map(|m| m.variance)),
+                naive_variance: colours(channels.map(|m| m.naive)),
                 radiance,
                 squares,
                 expected: colours(expected),
@@ -280,6 +303,8 @@ struct PixelError {
     variance: [f64; 3],
     /// From its own samples alone.
     own_variance: [f64; 3],
+    /// The same if samples were independent.
+    naive_variance: [f64; 3],
     /// As far as it is known ([`plausible`]).
     radiance: [f64; 3],
     /// The radiance that its neighbours lead to expect.
@@ -387,6 +412,26 @@ mod tests {
     }
 
     #[test]
+    fn a_promise_is_more_careful_where_few_pixels_hold_the_error() {
+        let care = |film: &Film| {
+            let total = film.error().unwrap();
+            total.careful_rel_mse / total.rel_mse
+        };
+        let even = care(&film(64, 0.5, |_, _| 3.0));
+        assert!((1.0..1.1).contains(&even), "{even}");
+        // Noise in five pixels, which are not so much brighter that they would be fireflies.
+        let noisy = |pixel: usize| pixel % 800 == 7;
+        let mut few = film(64, 0.01, |_, _| 3.0);
+        for pixel in (0..few.pixels()).filter(|pixel| noisy(*pixel)) {
+            let sums = &mut few.sums[pixel];
+            (0..BLOCKS)
+                .for_each(|block| sums[block] = sums[block].map(|sum| sum * if block % 2 == 0 { 1.5 } else { 0.5 }));
+        }
+        let few = care(&few);
+        assert!((1.2..2.0).contains(&few), "{few}");
+    }
+
+    #[test]
     fn bands_do_not_show() {
         let wide = film(16, 0.5, |x, y| if (x * y) % 97 == 3 { 50.0 } else { 1.0 + f64::from(x % 3) });
         let contrasts = wide.contrasts(Convergence::INDEPENDENT);
@@ -470,7 +515,14 @@ mod tests {
         assert_eq!((total.fireflies, total.unknown), (0, 1));
         assert!(errors.standard_error.iter().flatten().all(|e| e.is_finite()));
         let error = film(8, 0.0, |x, _| f64::from(x)).error().unwrap();
-        let nothing = ErrorEstimate { rmse: 0.0, rel_mse: 0.0, fireflies: 0, unknown: 0, rel_mse_with_fireflies: 0.0 };
+        let nothing = ErrorEstimate {
+            rmse: 0.0,
+            rel_mse: 0.0,
+            careful_rel_mse: 0.0,
+            fireflies: 0,
+            unknown: 0,
+            rel_mse_with_fireflies: 0.0,
+        };
         assert_eq!(error, nothing);
     }
 

@@ -7,6 +7,9 @@ pub struct ErrorEstimate {
     pub rmse: f64,
     /// relMSE as [`REL_MSE`](crate::film::REL_MSE) defines it: it does not depend on the unit of the radiance.
     pub rel_mse: f64,
+    /// What `rel_mse` is taken for where a promise depends on it, as a limit of the noise does: larger than `rel_mse`, and by more where that is less sure. The mean
+    /// (geometric) of `rel_mse` and of what it would be if samples were independent, times what chance may do where few pixels hold the error.
+    pub careful_rel_mse: f64,
     /// Pixels that are left out because they stand out of their neighbours by what few samples hold.
     pub fireflies: u64,
     /// Pixels that are left out because they have samples in fewer than two parts, which tells nothing.
@@ -20,6 +23,11 @@ impl ErrorEstimate {
     /// The relative error: the root of [`ErrorEstimate::rel_mse`].
     pub fn relative(&self) -> f64 {
         self.rel_mse.sqrt()
+    }
+
+    /// What is promised of it: the root of [`ErrorEstimate::careful_rel_mse`].
+    pub fn careful(&self) -> f64 {
+        self.careful_rel_mse.sqrt()
     }
 
     /// The same with the fireflies.
@@ -63,8 +71,14 @@ mod tests {
         let words = [0.0, 1e-9, 1.23e-5, 0.000_123, 0.0123, 0.123, 4.56, 1e9].map(relative_in_words);
         let expected = ["no noise", "below 0.001 %", "0.0012 %", "0.012 %", "1.2 %", "12 %", "456 %", "above 1000 %"];
         assert_eq!(words, expected);
-        let error =
-            ErrorEstimate { rmse: 1.0, rel_mse: 0.0004, fireflies: 1, unknown: 0, rel_mse_with_fireflies: 0.0007 };
+        let error = ErrorEstimate {
+            rmse: 1.0,
+            rel_mse: 0.0004,
+            careful_rel_mse: 0.0005,
+            fireflies: 1,
+            unknown: 0,
+            rel_mse_with_fireflies: 0.0007,
+        };
         assert_eq!(error.in_words(), "2.0 %");
         let fireflies = ErrorEstimate { rel_mse_with_fireflies: 0.25, ..error };
         assert_eq!(fireflies.in_words(), "2.0 % (50 % with fireflies)");

@@ -4,7 +4,7 @@ use super::digest::{self, BLANK, DIGEST};
 use super::provenance::Provenance;
 use crate::film::{BLOCKS, Film, SampleId};
 use crate::picture::{self, Attribute, Crop, Values};
-use crate::render::{DROPPED_NAMED, LEAST_FOR_NOISE, Rendered, is_a_pass};
+use crate::render::{DROPPED_NAMED, LEAST_FOR_NOISE, Rendered, Shares, is_a_pass};
 use crate::scene::Scene;
 use crate::{Error, Result};
 use serde::{Deserialize, Serialize};
@@ -14,11 +14,13 @@ use std::path::Path;
 const PROVENANCE: &str = "luminaire.provenance";
 const COUNTS: &str = "luminaire.counts";
 
-/// The picture, its error, its alpha, the numbers of samples and of those that met nothing, the sums in halves, what is left out.
-const MOST_CHANNELS: usize = 3 + 3 + 1 + 2 + 6 * BLOCKS + BLOCKS;
+/// The picture, its error, its alpha, the numbers of samples, of those that met nothing, and the shares, the sums in halves, what is left out.
+const MOST_CHANNELS: usize = 3 + 3 + 1 + 3 + 6 * BLOCKS + BLOCKS;
 
 /// The channel of the samples that met nothing.
 const MISSED: &str = "missed";
+/// The channel of the shares of the pixels.
+const SHARES: &str = "share";
 const HALVES: [&str; 2] = ["high", "low"];
 const CHANNELS: [&str; 3] = ["R", "G", "B"];
 
@@ -39,6 +41,8 @@ pub(super) struct Counts {
     seconds: f64,
     device_seconds: f64,
     noise_aim: u32,
+    /// Whether tiles have different shares of the samples.
+    pub adaptive: bool,
 }
 
 /// Writes what was rendered so far.
@@ -59,10 +63,15 @@ pub fn save(path: &Path, rendered: &Rendered, provenance: &Provenance) -> Result
         seconds: progress.seconds,
         device_seconds: rendered.device_seconds,
         noise_aim: rendered.noise_aim,
+        adaptive: rendered.shares.is_some(),
     };
     let mut channels = vec![("samples".to_owned(), Values::Integer(film.samples.clone()))];
     if let Some(missed) = &film.missed {
         channels.push((MISSED.to_owned(), Values::Integer(missed.clone())));
+    }
+    if let Some(shares) = &rendered.shares {
+        let shares = (0..film.pixels()).map(|pixel| shares.samples_of_pixel(pixel, 1)).collect();
+        channels.push((SHARES.to_owned(), Values::Integer(shares)));
     }
     for block in 0..BLOCKS {
         for (c, channel) in CHANNELS.into_iter().enumerate() {
@@ -151,7 +160,20 @@ fn sums(path: &Path, provenance: &Provenance, counts: Counts) -> Result<Rendered
         && film.samples[unfinished..].iter().all(|n| *n == least)
         && counts.end_sample == (least == most).then_some(most.wrapping_add(counts.first_sample));
     let end = counts.first_sample.checked_add(most);
-    if !in_order || end.is_none_or(|end| !is_a_pass(counts.first_sample + least..end)) {
+    let is_even = in_order && end.is_some_and(|end| is_a_pass(counts.first_sample + least..end));
+    let shares = match counts.adaptive {
+        false => None,
+        true => {
+            let shares = take(SHARES).ok_or_else(|| damaged(&format!("there is no channel `{SHARES}`")))?;
+            let shares = Shares::of_pixels(size, &shares);
+            Some(shares.ok_or_else(|| damaged("its shares of the samples are impossible"))?)
+        }
+    };
+    let is_fine = match &shares {
+        None => is_even,
+        Some(shares) => counts.first_sample == 0 && shares.allow(&film.samples, counts.noise_aim),
+    };
+    if !is_fine {
         return Err(damaged("its numbers of samples are impossible"));
     }
     for block in 0..BLOCKS {
@@ -192,6 +214,7 @@ fn sums(path: &Path, provenance: &Provenance, counts: Counts) -> Result<Rendered
     rendered.device_seconds = counts.device_seconds;
     // Where the limit of the noise is looked at next is at most twice as far as there are samples.
     rendered.noise_aim = counts.noise_aim.clamp(LEAST_FOR_NOISE, most.saturating_mul(2).max(LEAST_FOR_NOISE));
+    rendered.shares = shares;
     let progress = &mut rendered.progress;
     progress.samples = rendered.film.samples.iter().map(|n| u64::from(*n)).sum();
     (progress.rays, progress.shadow_rays, progress.seconds) = (counts.rays, counts.shadow_rays, counts.seconds);

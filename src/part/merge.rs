@@ -48,6 +48,13 @@ pub fn merge(paths: &[PathBuf]) -> Result<(Rendered, Provenance, Vec<Shown>)> {
     let mut first: Option<(Provenance, &PathBuf)> = None;
     for path in paths {
         let (provenance, counts) = about(path)?;
+        if counts.adaptive {
+            return Err(Error::Usage(format!(
+                "{}: its pixels have different numbers of samples (--adaptive), which cannot be joined with others: give one render all the time it needs, with --checkpoint \
+                 and --resume, or render parts with --samples",
+                path.display()
+            )));
+        }
         let whole = |end: &u32| *end > counts.first_sample && counts.wanted_end.is_none_or(|wanted| *end >= wanted);
         let Some(end) = counts.end_sample.filter(whole) else {
             let wanted = counts.wanted_end.map_or("END".into(), |wanted| wanted.to_string());

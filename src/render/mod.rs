@@ -10,10 +10,12 @@
 mod aovs;
 mod budget;
 mod cropped;
+mod patches;
 mod progress;
 mod rendered;
 mod run;
 mod schedule;
+mod shares;
 mod tracer;
 
 pub use aovs::aovs;
@@ -23,9 +25,11 @@ pub use progress::{LEAST_FOR_NOISE, Limits, MOST_WITHOUT_ESTIMATE, Progress};
 pub use rendered::{DROPPED_NAMED, End, Rendered};
 pub use run::Run;
 pub(crate) use schedule::is_a_pass;
+pub use shares::Shares;
 pub use tracer::{SceneTracer, Traced, Tracer};
 
 use crate::Result;
+use rendered::at_a_look;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
@@ -61,9 +65,9 @@ pub fn resume(
     let elapsed = || before + start.elapsed().as_secs_f64();
     rendered.progress.limits = limits;
     rendered.end = End::Samples;
-    if limits.noise.is_some() {
+    if limits.noise.is_some() && rendered.shares.is_none() {
         // An earlier run may have had no such limit.
-        rendered.noise_aim = rendered.noise_aim.max(rendered.film.most_samples());
+        rendered.noise_aim = rendered.noise_aim.max(at_a_look(rendered.film.most_samples()));
     }
     let mut run = Run::new(rendered, limits.spp.unwrap_or(u32::MAX));
     if let Some(limit) = limits.noise {
@@ -180,7 +184,7 @@ mod tests {
     }
 
     fn run(fake: &mut Fake, size: (u32, u32), spp: u32) -> Rendered {
-        let limits = Limits { spp: Some(spp), seconds: None, noise: None };
+        let limits = Limits { spp: Some(spp), ..Limits::default() };
         render(fake, size, limits, &mut |_| {}, &AtomicBool::new(false)).unwrap()
     }
 
@@ -281,7 +285,7 @@ mod tests {
     #[test]
     fn time_ends_at_a_batch() {
         let mut fake = Fake::new(64, 1 << 20, 0.001);
-        let limits = Limits { spp: None, seconds: Some(0.05), noise: None };
+        let limits = Limits { seconds: Some(0.05), ..Limits::default() };
         let mut calls = 0;
         let rendered = render(&mut fake, (64, 64), limits, &mut |_| calls += 1, &AtomicBool::new(false)).unwrap();
         assert!(matches!(rendered.end, End::Time));
@@ -294,7 +298,7 @@ mod tests {
     fn stop_keeps_what_was_done() {
         let mut fake = Fake::new(64, 4096, 1e-3);
         let stop = AtomicBool::new(false);
-        let limits = Limits { spp: Some(1000), seconds: None, noise: None };
+        let limits = Limits { spp: Some(1000), ..Limits::default() };
         let mut until_three = |p: &Progress| stop.store(p.samples >= 3 * 4096 * 4, Ordering::Relaxed);
         let rendered = render(&mut fake, (64, 64), limits, &mut until_three, &stop).unwrap();
         assert!(matches!(rendered.end, End::Stopped));
@@ -329,7 +333,7 @@ mod tests {
     fn the_noise_ends_a_render_after_the_same_samples_at_any_speed() {
         let mut films = Vec::new();
         for seconds in [1e-4, 3e-3, 1e9] {
-            let limits = Limits { noise: Some(0.5), spp: Some(100_000), seconds: None };
+            let limits = Limits { noise: Some(0.5), spp: Some(100_000), ..Limits::default() };
             let mut fake = Fake::new(37, 10_000_000, seconds);
             let rendered = render(&mut fake, (37, 23), limits, &mut |_| {}, &AtomicBool::new(false)).unwrap();
             assert!(matches!(rendered.end, End::Noise), "{:?}", rendered.end);

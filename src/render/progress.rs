@@ -9,9 +9,11 @@ pub struct Limits {
     pub spp: Option<u32>,
     /// Seconds of wall-clock time, over all runs of a render, met at the next end of a batch.
     pub seconds: Option<f64>,
-    /// Estimated relative error without the fireflies ([`ErrorEstimate::relative`](crate::film::ErrorEstimate::relative)), met when all pixels
-    /// have equally many samples, at least [`LEAST_FOR_NOISE`]. Where there is no estimate ([`MOST_WITHOUT_ESTIMATE`]) it ends the render, too.
+    /// Estimated relative error without the fireflies, as careful as a promise wants it ([`ErrorEstimate::careful`](crate::film::ErrorEstimate::careful)), met when all pixels
+    /// have equally many samples, at least [`LEAST_FOR_NOISE`], and their blocks are whole. Where there is no estimate ([`MOST_WITHOUT_ESTIMATE`]) it ends the render, too.
     pub noise: Option<f64>,
+    /// Whether a limit of the noise may give tiles of the picture different numbers of samples ([`Shares`](super::Shares)). `spp` is then that of a pixel in the mean.
+    pub adaptive: bool,
 }
 
 /// A limit of the noise ends a render without being met after this many samples a pixel if there is still nothing to estimate: the picture is black
@@ -60,7 +62,7 @@ impl Progress {
         let by_time = self.limits.seconds.map_or(0.0, |seconds| self.seconds / seconds);
         // The squared error falls with the number of samples.
         let by_noise = match (self.limits.noise, self.error) {
-            (Some(limit), Some(error)) => (limit / error.relative()).powi(2),
+            (Some(limit), Some(error)) => (limit / error.careful()).powi(2),
             _ => 0.0,
         };
         by_samples.max(by_time).max(by_noise).min(1.0)
@@ -79,7 +81,7 @@ mod tests {
 
     #[test]
     fn progress_by_the_nearer_limit() {
-        let limits = Limits { spp: Some(10), seconds: Some(100.0), noise: None };
+        let limits = Limits { spp: Some(10), seconds: Some(100.0), ..Limits::default() };
         let progress =
             Progress { samples: 500, pixels: 100, rays: 4_000_000, seconds: 2.0, limits, ..Progress::default() };
         assert_eq!(progress.fraction(), 0.5);

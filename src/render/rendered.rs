@@ -1,6 +1,7 @@
 //! What a render did so far.
 
 use super::progress::{LEAST_FOR_NOISE, Progress};
+use super::shares::Shares;
 use super::tracer::Traced;
 use crate::film::{Batch, Blocks, Film, SampleId};
 use crate::picture::Crop;
@@ -42,6 +43,8 @@ pub struct Rendered {
     pub device_seconds: f64,
     /// The number of samples at which a limit of the noise is looked at next.
     pub noise_aim: u32,
+    /// How many times that number each tile gets, where a limit of the noise has found that they should differ.
+    pub shares: Option<Shares>,
     /// Why the last run ended.
     pub end: End,
 }
@@ -62,6 +65,7 @@ impl Rendered {
             dropped_samples: Vec::new(),
             device_seconds: 0.0,
             noise_aim: LEAST_FOR_NOISE,
+            shares: None,
             end: End::Stopped,
         })
     }
@@ -101,14 +105,23 @@ impl Rendered {
         self.progress.seconds += next.progress.seconds;
     }
 
-    /// Estimates the error and says whether it is below `limit`; if not, when to look again. Only where all pixels have
-    /// [`Rendered::noise_aim`] samples.
-    pub(super) fn quiet_enough(&mut self, limit: f64) -> bool {
+    /// Estimates the error and says whether it is below `limit`; if not, when to look again, and, if `adaptive`, whether tiles are to have different
+    /// shares from now on. Only where all pixels have [`Rendered::noise_aim`] samples, or their share of it.
+    pub(super) fn quiet_enough(&mut self, limit: f64, adaptive: bool) -> bool {
         self.progress.error = self.film.error();
         // No estimate at all: no light was found, or every sample was lost.
-        let relative = self.progress.error.map_or(f64::INFINITY, |error| error.relative());
+        let relative = self.progress.error.map_or(f64::INFINITY, |error| error.careful());
         if relative > limit {
-            self.noise_aim = samples_to_reach(self.noise_aim, relative, limit);
+            let may_differ =
+                adaptive && self.shares.is_none() && self.noise_aim.is_power_of_two() && self.film.first_sample == 0;
+            let shares = if may_differ { Shares::of(&self.film, (relative / limit).powi(2)) } else { None };
+            let most = f64::from(self.progress.limits.spp.unwrap_or(u32::MAX));
+            let shares = shares.filter(|shares| shares.mean_samples(self.noise_aim) <= most);
+            match shares {
+                // The smallest share is there already.
+                Some(shares) => self.shares = Some(shares),
+                None => self.noise_aim = samples_to_reach(self.noise_aim, relative, limit),
+            }
         }
         relative <= limit
     }
@@ -118,32 +131,57 @@ pub(super) fn samples_of(batch: &Batch) -> u64 {
     batch.tile.pixels() as u64 * u64::from(batch.samples.end - batch.samples.start)
 }
 
-/// How many samples to take before the error is looked at again: those that bring it from `relative` to `limit`, and a little more, but
-/// at most as many again as there are. The estimate of an error from few samples is not to be relied on. Whole blocks, where both picture and estimate are
-/// better than between.
+/// How many samples to take before the error is looked at again: those that bring it from `relative` to `limit`, but at most as many again as there are, and whole
+/// blocks. The estimate of an error from few samples is not to be relied on, and who looks often meets one that is too small by chance.
 fn samples_to_reach(samples: u32, relative: f64, limit: f64) -> u32 {
     let needed = f64::from(samples) * (relative / limit).powi(2);
-    let least = samples.saturating_add(samples / 32 + 1);
-    let most = samples.saturating_mul(2).max(least);
     // Rust's `as` saturates.
-    let aim = ((1.01 * needed) as u32).clamp(least, most);
-    let length = Blocks::of(0..aim).length();
-    let whole = aim.checked_next_multiple_of(length).filter(|whole| *whole <= most);
-    whole.unwrap_or((aim / length * length).max(least))
+    let wanted = (needed.ceil() as u32).clamp(samples.saturating_add(1), samples.saturating_mul(2));
+    at_a_look(wanted)
+}
+
+/// The least number of samples at which a limit of the noise is looked at that is not below this one: that of whole blocks, where both picture and estimate are better than
+/// between.
+pub(super) fn at_a_look(samples: u32) -> u32 {
+    let samples = samples.max(LEAST_FOR_NOISE);
+    samples.checked_next_multiple_of(Blocks::of(0..samples).length()).unwrap_or(u32::MAX)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::film::{PixelSum, Tile, group_length};
+    use crate::sampling::{random4, uniform};
+
+    #[test]
+    fn a_limit_of_the_noise_goes_by_the_careful_error() {
+        let mut rendered = Rendered::nothing((8, 8), 0).unwrap();
+        let tile = Tile { x: 0, y: 0, width: 8, height: 8 };
+        for sample in 0..LEAST_FOR_NOISE {
+            let value = |pixel: u32| 1.0 + uniform(random4(pixel, sample, 0, 5)[0]);
+            let sums: Vec<_> =
+                (0..64).map(|pixel| PixelSum { radiance: [value(pixel); 3], ..Default::default() }).collect();
+            rendered.film.add(&Batch { tile, samples: sample..sample + 1, group: group_length(0) }, &sums);
+        }
+        let error = rendered.film.error().unwrap();
+        assert!(error.careful() > 1.02 * error.relative(), "{error:?}");
+        assert!(!rendered.quiet_enough(1.01 * error.relative(), false) && rendered.noise_aim > LEAST_FOR_NOISE);
+        rendered.noise_aim = LEAST_FOR_NOISE;
+        assert!(rendered.quiet_enough(1.001 * error.careful(), false) && rendered.noise_aim == LEAST_FOR_NOISE);
+    }
 
     #[test]
     fn the_next_look_at_the_noise() {
         // Four times the error needs sixteen times the samples, and is not believed at once.
-        assert_eq!(samples_to_reach(128, 0.4, 0.1), 256);
-        // Not 156, 104 and 200: whole blocks of 32, of 16, and of 32 that are not more than twice as many samples.
-        assert_eq!(samples_to_reach(128, 0.11, 0.1), 160);
-        assert_eq!(samples_to_reach(100, 0.1001, 0.1), 112);
-        assert_eq!(samples_to_reach(100, f64::INFINITY, 0.1), 192);
+        assert_eq!(samples_to_reach(96, 0.4, 0.1), 192);
+        assert_eq!(samples_to_reach(96, 0.11, 0.1), 128);
+        assert_eq!(samples_to_reach(96, 0.1001, 0.1), 112);
+        assert_eq!(samples_to_reach(96, f64::INFINITY, 0.1), 192);
+        assert_eq!(samples_to_reach(128, 0.11, 0.1), 160, "from there on by 32");
         assert_eq!(samples_to_reach(u32::MAX - 1, 0.2, 0.1), u32::MAX);
+        let looks: Vec<u32> =
+            std::iter::successors(Some(LEAST_FOR_NOISE), |n| Some(at_a_look(n + 1))).take(10).collect();
+        assert_eq!(looks, [32, 40, 48, 56, 64, 80, 96, 112, 128, 160]);
+        assert_eq!([0, 7, 33, 1000].map(at_a_look), [32, 32, 40, 1024]);
     }
 }

@@ -14,6 +14,7 @@ pub mod rays;
 pub mod report;
 pub mod stability;
 pub mod statistics;
+pub mod stopping;
 mod workbench;
 
 pub use workbench::Workbench;

@@ -23,8 +23,14 @@ mod tests {
 
     #[test]
     fn the_line_says_what_is_seen() {
-        let error =
-            Some(ErrorEstimate { rmse: 0.5, rel_mse: 0.0004, fireflies: 0, unknown: 0, rel_mse_with_fireflies: 0.01 });
+        let error = Some(ErrorEstimate {
+            rmse: 0.5,
+            rel_mse: 0.0004,
+            careful_rel_mse: 0.0005,
+            fireflies: 0,
+            unknown: 0,
+            rel_mse_with_fireflies: 0.01,
+        });
         let progress =
             Progress { samples: 250, pixels: 100, rays: 3_000_000, seconds: 2.0, error, ..Progress::default() };
         let line = |shown, size| figures(&progress, shown, size, (20, 10), "cpu");

@@ -137,7 +137,7 @@ mod tests {
 
     #[test]
     fn a_sequence_has_the_time_of_all_its_frames_left() {
-        let limits = Limits { spp: Some(64), seconds: None, noise: None };
+        let limits = Limits { spp: Some(64), ..Limits::default() };
         let half = Progress { samples: 3200, pixels: 100, seconds: 1.0, limits, ..Progress::default() };
         let mut reporter = Reporter::of_frames(true, 4);
         assert_eq!(reporter.frames.unwrap().seconds_left(&half), Some(7.0));
@@ -150,15 +150,21 @@ mod tests {
 
     #[test]
     fn lines_say_how_far_how_fast_and_how_good() {
-        let limits = Limits { spp: Some(64), seconds: None, noise: None };
+        let limits = Limits { spp: Some(64), ..Limits::default() };
         let progress =
             Progress { samples: 1600, pixels: 100, rays: 6_000_000, seconds: 2.0, limits, ..Progress::default() };
         assert_eq!(
             describe(&progress, progress.seconds_left()),
             "16.0 of 64 samples a pixel, 3.00 Mrays/s, 6.00 s left"
         );
-        let error =
-            ErrorEstimate { rmse: 0.1, rel_mse: 0.0625, fireflies: 0, unknown: 0, rel_mse_with_fireflies: 0.0625 };
+        let error = ErrorEstimate {
+            rmse: 0.1,
+            rel_mse: 0.0625,
+            careful_rel_mse: 0.0625,
+            fireflies: 0,
+            unknown: 0,
+            rel_mse_with_fireflies: 0.0625,
+        };
         let limits = Limits { noise: Some(0.125), ..limits };
         let with_error = Progress { limits, error: Some(error), ..progress };
         assert_eq!(

@@ -35,5 +35,5 @@ pub fn limits(options: &Options, scene: &Scene) -> Limits {
     let other_limit = options.time.is_some() || options.noise.is_some();
     let scene_spp = (!other_limit).then_some(scene.settings.spp);
     let spp = options.samples.as_ref().map(|samples| samples.end).or(options.spp).or(scene_spp);
-    Limits { spp, seconds: options.time, noise: options.noise }
+    Limits { spp, seconds: options.time, noise: options.noise, adaptive: options.adaptive }
 }

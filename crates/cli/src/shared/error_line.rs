@@ -153,7 +153,14 @@ mod tests {
 
     #[test]
     fn few_samples_are_uncertain() {
-        let error = ErrorEstimate { rmse: 0.1, rel_mse: 0.01, fireflies: 2, unknown: 3, rel_mse_with_fireflies: 0.25 };
+        let error = ErrorEstimate {
+            rmse: 0.1,
+            rel_mse: 0.01,
+            careful_rel_mse: 0.01,
+            fireflies: 2,
+            unknown: 3,
+            rel_mse_with_fireflies: 0.25,
+        };
         let says = |samples| error_line(&film(samples, 40, 1.0), Some(error), false);
         assert_eq!(
             says(64),
