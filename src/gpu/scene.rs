@@ -63,7 +63,8 @@ impl GpuScene {
             (Some(sky), Some(distribution)) => environment(sky, distribution),
             _ => Default::default(),
         };
-        let tree = table.tree.as_ref().map(light_tree).unwrap_or_default();
+        // Without one, zeros say so to a kernel that could use it.
+        let tree = table.tree.as_ref().map_or_else(|| vec![[0; 4]; layout::LIGHT_TREE_HEADER], light_tree);
         let frame_data = frame(scene, &table);
         Ok(GpuScene {
             frame: Buffer::upload(device, "frame", &[frame_data], vk::BufferUsageFlags::UNIFORM_BUFFER)?,
