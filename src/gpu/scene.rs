@@ -147,7 +147,8 @@ impl Lighting {
         let materials: Vec<_> = (0..scene.materials.len()).map(|i| material(scene, table, i)).collect();
         let (environment_texels, environment_choice) =
             scene.environment.as_ref().map(|sky| environment(sky, table.environment.as_ref())).unwrap_or_default();
-        let tree = table.tree.as_ref().map(light_tree).unwrap_or_default();
+        // Without one, zeros say so to a kernel that could use it.
+        let tree = table.tree.as_ref().map_or_else(|| vec![[0; 4]; layout::LIGHT_TREE_HEADER], light_tree);
         Ok(Lighting {
             materials: texel_buffer(device, "materials", &materials)?,
             luminaires: texel_buffer(device, "luminaires", &luminaires(scene, table, places))?,
