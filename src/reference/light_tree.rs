@@ -99,13 +99,13 @@ fn light_cuts(importances: [f64; CHILDREN], width: u32) -> Option<[u32; 3]> {
     let [a, b, c, d] = importances;
     let sums = [a, a + b, a + b + c];
     let total = sums[2] + d;
-    if !(total > 0.0) {
+    if total.is_nan() || total <= 0.0 {
         return None;
     }
     let usable = u64::from(width - CHILDREN as u32);
     Some(std::array::from_fn(|i| {
         let fraction = (sums[i] / total * LAST_FRACTION) as u32;
-        (usable * u64::from(fraction) >> 32) as u32 + i as u32 + 1
+        ((usable * u64::from(fraction)) >> 32) as u32 + i as u32 + 1
     }))
 }
 

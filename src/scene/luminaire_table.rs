@@ -189,7 +189,7 @@ fn light_tree(scene: &Scene, entries: &[SampledLuminaire], powers: &[f64]) -> Op
         let is_area = matches!(entry, SampledLuminaire::Area(_));
         let own_place = is_area.then_some(emissive);
         emissive += u32::from(is_area);
-        if !(*own_power > 0.0) {
+        if own_power.is_nan() || *own_power <= 0.0 {
             continue;
         }
         let source = |corners, normal, two_sided, strength| Source {

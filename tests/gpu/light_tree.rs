@@ -65,7 +65,7 @@ fn the_tree_is_the_reference_s() {
             for (number, results) in results.chunks(lamps.len()).enumerate() {
                 let mut expected: Vec<f64> = vec![];
                 for (lamp, result) in lamps.iter().zip(results) {
-                    let found = f64::from(floats(result[0])[0]);
+                    let found = floats(result[0])[0];
                     let right = tracer.tree_probability(tree, &surfaces[number], lamp.object, lamp.triangle);
                     // By a number or two of 2^24 where it is next to nothing.
                     assert!((found - right).abs() <= 1e-3 * right + 3e-7, "{name}: {found} for {right}");
