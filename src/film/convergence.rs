@@ -14,10 +14,12 @@
 //! single power does not fit both, and goes wrong by what it extrapolates.
 
 use super::blocks::{BLOCKS, Blocks};
+use std::cmp::Reverse;
+use std::collections::BTreeSet;
 use std::ops::Range;
 
-/// Lengths of runs of which the halves are compared: that around all samples, those half and a quarter as long, and one more where the samples begin and end within
-/// blocks.
+/// Lengths of runs of which the halves are compared, at most: those of two, four and eight blocks, and where the samples are on both sides of the middle of a longer
+/// run, that one.
 pub(super) const LEVELS: usize = 4;
 
 /// How the variance of a pixel's mean falls with the number of its samples, `x / n + y / n^2`: the second summand's share of it with the samples that the pixel has.
@@ -204,7 +206,10 @@ impl Contrasts {
         };
         let some_tell = found.iter().any(tells);
         let tells = |contrast: &(u32, [Range<u32>; 2])| !some_tell || tells(contrast);
-        let top = found.iter().filter(|contrast| tells(contrast)).map(|(log, _)| *log).max().unwrap_or(0);
+        // The longest runs first.
+        let logs: BTreeSet<Reverse<u32>> =
+            found.iter().filter(|contrast| tells(contrast)).map(|(log, _)| Reverse(*log)).collect();
+        let rank = |log: u32| logs.iter().take_while(|longer| longer.0 > log).count();
         let expected = |log: u32, [left, right]: &[Range<u32>; 2], convergence| {
             let model = model(convergence);
             let [a, b] = [left, right].map(|half| half.len() as f64);
@@ -213,7 +218,7 @@ impl Contrasts {
         let (mut levels, mut counts) = ([[0.0; 2]; LEVELS], [0.0; LEVELS]);
         let contrasts = found.iter().map(|contrast| {
             let (log, [left, right]) = contrast;
-            let level = tells(contrast).then(|| (top - log) as usize);
+            let level = tells(contrast).then(|| rank(*log));
             if let Some(level) = level {
                 counts[level] += 1.0;
                 for (i, summand) in [Convergence::INDEPENDENT, Convergence::REGULAR].into_iter().enumerate() {
@@ -274,9 +279,12 @@ mod tests {
     use super::*;
     use crate::sampling::{Sampler, uniform};
 
+    /// Samples on both sides of a large power of two: what is around them is far longer than they are.
+    const ACROSS: (u32, u32) = ((1 << 20) - 16, (1 << 20) + 12);
+
     #[test]
     fn independent_samples_are_those_of_the_text_book() {
-        for (first, end) in [(0, 2), (0, 3), (0, 8), (0, 100), (3, 5), (13, 77), (70, 2000)] {
+        for (first, end) in [(0, 2), (0, 3), (0, 8), (0, 100), (3, 5), (13, 77), (70, 2000), ACROSS] {
             let contrasts = Contrasts::new(first..end, Convergence::INDEPENDENT);
             let blocks = Blocks::of(first..end);
             assert_eq!(contrasts.contrasts.len() + 1, blocks.count());
@@ -297,10 +305,24 @@ mod tests {
         }
     }
 
+    /// No range has more lengths than there is room for.
+    #[test]
+    fn any_range_has_contrasts() {
+        let starts = [0, 1, 7, 8, 13, 100, (1 << 16) - 9, (1 << 20) - 100, (1 << 31) - 3, u32::MAX - 300];
+        for first in starts {
+            for samples in (1..300).filter(|samples| first.checked_add(*samples).is_some()) {
+                let range = first..first + samples;
+                let contrasts = Contrasts::new(range.clone(), Convergence(0.3));
+                assert_eq!(contrasts.contrasts.len() + 1, Blocks::of(range.clone()).count());
+                assert!(contrasts.whole > 0.0 && contrasts.contrasts.iter().all(|c| c.expected > 0.0), "{range:?}");
+            }
+        }
+    }
+
     /// A sum of what falls as `1 / n` and what falls as `1 / n^2` is told apart, from any range of samples.
     #[test]
     fn both_summands_are_found_again() {
-        for (first, end) in [(0, 16), (0, 100), (64, 128), (13, 77), (3, 40), (70, 1000)] {
+        for (first, end) in [(0, 16), (0, 100), (64, 128), (13, 77), (3, 40), (70, 1000), ACROSS] {
             for [x, y] in [[1.0, 0.0], [0.7, 0.3], [0.1, 2.0], [0.0, 5.0]] {
                 let contrasts = Contrasts::new(first..end, Convergence::INDEPENDENT);
                 let squares = contrasts.levels.map(|[independent, regular]| x * independent + y * regular);
