@@ -10,22 +10,26 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 const SIDE: u32 = 40;
 
-/// Grey pixels of radiance 1, whose samples are skewed: with a probability of an eighth brighter by 7 `spread`, else darker by `spread`, which halves from
-/// the left to the right several times.
+/// Grey pixels of radiance 1, whose samples are skewed: rare ones are brighter, and the others darker by [`spread`].
 struct Uneven {
     seed: u32,
+    /// The probability of the bright ones.
+    rare: f64,
+    /// By how much all are spread, over [`spread`].
+    scale: f64,
     batch_seconds: f64,
     batches: usize,
 }
 
 impl Uneven {
     fn new(seed: u32) -> Self {
-        Uneven { seed, batch_seconds: 1e9, batches: 0 }
+        Uneven { seed, rare: 0.125, scale: 1.0, batch_seconds: 1e9, batches: 0 }
     }
 }
 
+/// It halves from the left to the right several times.
 fn spread(x: u32) -> f64 {
-    (-f64::from(x) / 9.0).exp2()
+    0.5 * (-f64::from(x) / 9.0).exp2()
 }
 
 impl Tracer for Uneven {
@@ -39,7 +43,8 @@ impl Tracer for Uneven {
                     let mut sum = PixelSum::default();
                     for sample in batch.group_samples(group) {
                         let random = uniform(random4(y * SIDE + x, sample, 0, self.seed)[0]);
-                        let value = 1.0 + spread(x) * if random < 0.125 { 7.0 } else { -1.0 };
+                        let value = 1.0
+                            + self.scale * spread(x) * if random < self.rare { 1.0 / self.rare - 1.0 } else { -1.0 };
                         sum.radiance.iter_mut().for_each(|sum| *sum += value);
                         sum.rays += Rays { all: 1, shadow: 0 };
                     }
@@ -78,38 +83,40 @@ fn render(tracer: &mut Uneven, noise: f64) -> Rendered {
 
 #[test]
 fn noisy_tiles_get_more_samples_and_the_error_is_met_with_fewer() {
-    let rendered = render(&mut Uneven::new(1), 0.06);
+    let rendered = render(&mut Uneven::new(1), 0.03);
     assert!(matches!(rendered.end, End::Noise));
     let samples = |x: usize| rendered.film.samples[20 * SIDE as usize + x];
     assert!(samples(2) >= 4 * samples(38), "{} and {}", samples(2), samples(38));
-    let even = Limits { adaptive: false, ..limits(0.06) };
+    let even = Limits { adaptive: false, ..limits(0.03) };
     let even = resume(&mut Uneven::new(1), nothing(), even, &mut |_| {}, &AtomicBool::new(false));
     assert!(even.shares.is_none());
     let saved = rendered.progress.spp() / even.progress.spp();
     assert!(saved < 0.85, "{} and {} samples a pixel", rendered.progress.spp(), even.progress.spp());
     let square = rendered.film.to_linear().iter().map(|v| f64::from(v - 1.0).powi(2)).sum::<f64>();
     let error = (square / f64::from(3 * SIDE * SIDE) / (1.0 + 1.0 / 9.0)).sqrt();
-    assert!(error < 1.1 * 0.06, "{error}");
+    assert!(error < 1.1 * 0.03, "{error}");
 }
 
-/// The mean of many adaptive renders is the truth: other samples decide than are reported.
+/// The mean of many adaptive renders is the truth: other samples decide than are reported. If a tile decided by its own, rare bright samples would get it more of them,
+/// and count for less: z is -4 then.
 #[test]
 fn adaptive_samples_have_no_bias() {
-    let renders = 600;
+    let renders = 400;
     let (mut sum, mut square, mut adaptive) = (0.0, 0.0, 0);
     for seed in 0..renders {
-        let rendered = render(&mut Uneven::new(seed), 0.1);
+        let rendered = render(&mut Uneven { rare: 1.0 / 128.0, scale: 0.1, ..Uneven::new(seed) }, 0.019);
         adaptive += u32::from(rendered.shares.is_some());
-        let mean = (0..rendered.film.pixels()).map(|pixel| rendered.film.mean(pixel)[0]).sum::<f64>();
-        let off = mean / f64::from(SIDE * SIDE) - 1.0;
+        // In units of what a sample varies, so that quiet pixels say as much as noisy ones.
+        let off = |pixel: usize| (rendered.film.mean(pixel)[0] - 1.0) / spread(pixel as u32 % SIDE);
+        let off = (0..rendered.film.pixels()).map(off).sum::<f64>() / f64::from(SIDE * SIDE);
         sum += off;
         square += off * off;
     }
     let n = f64::from(renders);
     let z = sum / n / (square / n / n).sqrt();
-    assert!(adaptive > renders * 9 / 10, "{adaptive}");
-    println!("bias {:+.5} %, z {z:+.2}", 100.0 * sum / n);
-    assert!(z.abs() < 4.0, "bias {:+.5} %, z {z:+.2}", 100.0 * sum / n);
+    println!("bias {:+.4} spreads, z {z:+.2}, shares in {adaptive} of {renders}", sum / n);
+    assert!(adaptive > renders * 8 / 10, "{adaptive}");
+    assert!(z.abs() < 3.0, "z {z:+.2}");
 }
 
 #[test]
@@ -117,11 +124,11 @@ fn batches_and_interruptions_do_not_show() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("checkpoint.exr");
     let provenance = Provenance::of(&empty(SIDE, SIDE));
-    let whole = render(&mut Uneven::new(7), 0.06);
+    let whole = render(&mut Uneven::new(7), 0.03);
     assert!(whole.shares.is_some());
     for batch_seconds in [2e-4, 1e-2] {
         let mut tracer = Uneven { batch_seconds, ..Uneven::new(7) };
-        let rendered = render(&mut tracer, 0.06);
+        let rendered = render(&mut tracer, 0.03);
         assert!(rendered.film == whole.film && rendered.shares == whole.shares, "{batch_seconds}");
         // Interrupted again and again, each time read from a file: the first time in the middle of the even part.
         for every in [5, tracer.batches / 6] {
@@ -138,7 +145,7 @@ fn batches_and_interruptions_do_not_show() {
                     stop.store(batches >= every, Ordering::Relaxed);
                 };
                 stop.store(false, Ordering::Relaxed);
-                rendered = resume(&mut tracer, rendered, limits(0.06), &mut watch, &stop);
+                rendered = resume(&mut tracer, rendered, limits(0.03), &mut watch, &stop);
                 runs += 1;
                 part::save(&path, &rendered, &provenance).unwrap();
                 if !matches!(rendered.end, End::Stopped) {
@@ -157,7 +164,7 @@ fn batches_and_interruptions_do_not_show() {
 /// What was begun with shares goes on with them, also where no noise ends it, and never beyond the samples in the mean.
 #[test]
 fn shares_stay_without_a_limit_of_the_noise() {
-    let begun = render(&mut Uneven::new(3), 0.1);
+    let begun = render(&mut Uneven::new(3), 0.05);
     let (shares, before) = (begun.shares.clone().unwrap(), begun.progress.spp());
     let more = Limits { spp: Some(2 * before as u32), ..Limits::default() };
     let rendered = resume(&mut Uneven::new(3), begun, more, &mut |_| {}, &AtomicBool::new(false));
