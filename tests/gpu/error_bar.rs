@@ -81,11 +81,12 @@ fn a_noise_limit_is_met() {
             render(&mut backend.tracer(&scene(seed)), (32, 32), limits, &mut |_| {}, &AtomicBool::new(false))
                 .expect("it fits")
         };
-        let promise = 0.2;
+        let promise = 0.1;
         let rendered = run(0, Limits { noise: Some(promise), ..Limits::default() });
         assert!(matches!(rendered.end, End::Noise));
         let error = rendered.progress.error.expect("an estimate");
-        assert!(error.relative() <= promise && error.relative() > 0.9 * promise, "{error:?}");
+        // Between two looks the error falls by a tenth at most.
+        assert!(error.careful() <= promise && error.careful() > 0.85 * promise, "{error:?}");
         // Against 16 times as many other samples.
         let spp = rendered.film.most_samples();
         let truth = run(1, Limits { spp: Some(16 * spp), ..Limits::default() }).film;
@@ -99,8 +100,8 @@ fn a_noise_limit_is_met() {
         }
         let relative = (sum / n).sqrt();
         println!("{}: {spp} samples, {error:?}, against 16 times as many {relative}", backend.name());
-        // The truth's own error adds 3 %.
-        assert!((0.8..1.25).contains(&(relative / promise)), "{relative}");
+        // The truth's own error adds 3 %. The limit is met with care, so the error is below it.
+        assert!((0.7..1.1).contains(&(relative / promise)), "{relative}");
     });
 }
 
