@@ -116,7 +116,7 @@ fn a_limit_of_the_noise_that_fireflies_do_not_keep() {
 fn no_noise_and_too_few_samples_are_said_as_such() {
     let folder = folder();
     let flat = render(&folder, &["flat.toml", "--spp", "16"]);
-    assert!(flat.out.contains("no noise was found in 16 samples a pixel: all parts of them agree\n"), "{}", flat.out);
+    assert!(flat.out.contains("no noise was found in 16 samples a pixel: all blocks of them agree\n"), "{}", flat.out);
     assert!(!flat.err.contains("warning"), "{}", flat.err);
     let one = render(&folder, &["open.toml", "--spp", "1"]);
     assert!(one.out.contains("the error cannot be estimated: one sample a pixel tells nothing of it"), "{}", one.out);
