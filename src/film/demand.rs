@@ -24,7 +24,7 @@ const SUMS: u64 = FILM;
 const ALPHA: u64 = 4 + 4 + 12 + 4;
 
 /// What does not grow with the film: a batch of sums on the device and here, the rows in which errors are estimated, the blocks of a file.
-const FIXED: u64 = 56 << 20;
+const FIXED: u64 = 40 << 20;
 
 /// A film, and which files are written of it.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]

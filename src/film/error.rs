@@ -37,7 +37,7 @@ const NEIGHBOURS_POWER: f64 = -0.75;
 const TINY: f64 = 1e-15;
 
 /// So many pixels are worked on at a time, ...
-const BAND_PIXELS: usize = 1 << 16;
+const BAND_PIXELS: usize = 1 << 15;
 /// ... but so many rows at least: those above and below are worked out once more.
 const LEAST_ROWS: usize = 16;
 
