@@ -1,6 +1,7 @@
 //! Which of a scene's emissive triangles hang together, and which of these lamps are closed.
 
 use super::light_tree::Source;
+use super::sets::Sets;
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -8,14 +9,14 @@ use rayon::prelude::*;
 /// from outside nobody sees an inner side. Returns how many lamps there are; a point is one.
 pub(super) fn lamp_shapes(sources: &mut [Source]) -> usize {
     let corners = corner_numbers(sources);
-    let mut lamps = Lamps((0..sources.len() as u32).collect());
+    let mut lamps = Sets::new(sources.len());
     let mut first_with = vec![u32::MAX; corners.iter().flatten().max().map_or(0, |most| *most as usize + 1)];
-    for (index, triangle) in (0..).zip(&corners) {
+    for (index, triangle) in corners.iter().enumerate() {
         for corner in triangle {
             let first = &mut first_with[*corner as usize];
             match *first {
-                u32::MAX => *first = index,
-                other => lamps.join(index, other),
+                u32::MAX => *first = index as u32,
+                other => lamps.join(index, other as usize),
             }
         }
     }
@@ -33,13 +34,13 @@ pub(super) fn lamp_shapes(sources: &mut [Source]) -> usize {
         .collect();
     let mut volume = vec![0.0f64; sources.len()];
     for index in 0..sources.len() {
-        let lamp = lamps.of(index as u32) as usize;
+        let lamp = lamps.of(index);
         let from = sources[lamp].corners[0].as_dvec3();
         let [a, b, c] = sources[index].corners.map(|corner| corner.as_dvec3() - from);
         volume[lamp] += if open[index] { f64::NAN } else { a.dot(b.cross(c)) };
     }
     for (index, source) in sources.iter_mut().enumerate() {
-        let volume = volume[lamps.of(index as u32) as usize];
+        let volume = volume[lamps.of(index)];
         if source.two_sided && source.normal != DVec3::ZERO && volume.abs() > 0.0 {
             let [a, b, c] = source.corners.map(|corner| corner.as_dvec3());
             let outward = (b - a).cross(c - a) * volume.signum();
@@ -47,7 +48,7 @@ pub(super) fn lamp_shapes(sources: &mut [Source]) -> usize {
             source.normal *= if source.normal.dot(outward) < 0.0 { -1.0 } else { 1.0 };
         }
     }
-    (0..sources.len() as u32).filter(|index| lamps.of(*index) == *index).count()
+    (0..sources.len()).filter(|index| lamps.of(*index) == *index).count()
 }
 
 /// The corners of each triangle, numbered so that those in one place are one.
@@ -65,25 +66,6 @@ fn corner_numbers(sources: &[Source]) -> Vec<[u32; 3]> {
         numbers[*index as usize / 3][*index as usize % 3] = number;
     }
     numbers
-}
-
-/// Sets that are joined: each entry leads towards the first of its set.
-struct Lamps(Vec<u32>);
-
-impl Lamps {
-    fn of(&mut self, mut index: u32) -> u32 {
-        while self.0[index as usize] != index {
-            let next = self.0[self.0[index as usize] as usize];
-            self.0[index as usize] = next;
-            index = next;
-        }
-        index
-    }
-
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.of(a), self.of(b));
-        self.0[a.max(b) as usize] = a.min(b);
-    }
 }
 
 #[cfg(test)]

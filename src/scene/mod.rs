@@ -21,6 +21,7 @@ mod mesh;
 mod overlap;
 pub(crate) mod rounding;
 mod sensor;
+mod sets;
 mod settings;
 mod studio_sky;
 mod texture;

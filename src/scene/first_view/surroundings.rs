@@ -2,6 +2,7 @@
 
 use super::lattice::Mix;
 use super::solid::Solid;
+use crate::scene::sets::Sets;
 use glam::{DVec3, Vec3A};
 use std::collections::HashMap;
 use std::hash::BuildHasherDefault;
@@ -95,10 +96,10 @@ pub(super) fn within(solid: &Solid) -> Option<Bounds> {
 
 /// The pieces of a scene, in the order of their first triangles.
 fn pieces(solid: &Solid) -> Vec<Piece> {
-    let mut parent: Vec<u32> = (0..solid.len() as u32).collect();
+    let mut sets = Sets::new(solid.len());
     let mut edges: HashMap<[u32; 6], u32, BuildHasherDefault<Mix>> = HashMap::default();
     edges.reserve(solid.len() * 3 / 2);
-    for (index, corners) in (0..).zip(solid.corners()) {
+    for (index, corners) in solid.corners().enumerate() {
         // Adding zero makes one zero of both.
         let corners = corners.map(|corner| (corner + 0.0).to_array().map(f32::to_bits));
         for side in 0..3 {
@@ -106,19 +107,18 @@ fn pieces(solid: &Solid) -> Vec<Piece> {
             if b < a {
                 std::mem::swap(&mut a, &mut b);
             }
-            let first = *edges.entry([a[0], a[1], a[2], b[0], b[1], b[2]]).or_insert(index);
-            let (a, b) = (root(&mut parent, first), root(&mut parent, index));
-            parent[a.max(b) as usize] = a.min(b);
+            let first = *edges.entry([a[0], a[1], a[2], b[0], b[1], b[2]]).or_insert(index as u32);
+            sets.join(first as usize, index);
         }
     }
     let mut piece_of = vec![u32::MAX; solid.len()];
     let mut piece_of_triangle = Vec::with_capacity(solid.len());
     let mut pieces: Vec<Piece> = Vec::new();
-    for (index, [a, b, c]) in (0..).zip(solid.corners()) {
-        let root = root(&mut parent, index) as usize;
+    for (index, [a, b, c]) in solid.corners().enumerate() {
+        let root = sets.of(index);
         let normal = (b - a).cross(c - a).normalize_or_zero();
         // The root is the first of its piece.
-        if root == index as usize {
+        if root == index {
             piece_of[root] = pieces.len() as u32;
             pieces.push(Piece { bounds: Bounds::EMPTY, triangles: 0, plane: Some((normal, a)), bulge: 0.0 });
         }
@@ -134,12 +134,4 @@ fn pieces(solid: &Solid) -> Vec<Piece> {
         piece.bulge += a.dot(b.cross(c));
     }
     pieces
-}
-
-fn root(parent: &mut [u32], mut of: u32) -> u32 {
-    while parent[of as usize] != of {
-        parent[of as usize] = parent[parent[of as usize] as usize];
-        of = parent[of as usize];
-    }
-    of
 }

@@ -2,6 +2,7 @@
 
 use super::face::Face;
 use crate::scene::Scene;
+use crate::scene::sets::Sets;
 use glam::DVec3;
 use std::collections::HashMap;
 
@@ -129,17 +130,16 @@ pub(super) struct Surfaces {
 
 impl Surfaces {
     pub(super) fn new(faces: &[Face]) -> Self {
-        let mut parents: Vec<usize> = (0..faces.len()).collect();
+        let mut sets = Sets::new(faces.len());
         let mut known = HashMap::new();
         for (index, face) in faces.iter().enumerate() {
             let [a, b, c] = face.corners.map(|p| (p + DVec3::ZERO).to_array().map(f64::to_bits));
             for (a, b) in [(a, b), (b, c), (c, a)] {
                 let first = *known.entry((face.object, a.min(b), a.max(b))).or_insert(index);
-                let (a, b) = (root(&mut parents, first), root(&mut parents, index));
-                parents[a.max(b)] = a.min(b);
+                sets.join(first, index);
             }
         }
-        let of: Vec<usize> = (0..faces.len()).map(|index| root(&mut parents, index)).collect();
+        let of: Vec<usize> = (0..faces.len()).map(|index| sets.of(index)).collect();
         let mut boxes: HashMap<usize, (DVec3, DVec3)> = HashMap::new();
         for (face, surface) in faces.iter().zip(&of) {
             let (low, high) = boxes.entry(*surface).or_insert((DVec3::INFINITY, DVec3::NEG_INFINITY));
@@ -156,12 +156,4 @@ impl Surfaces {
         };
         self.of[a] != self.of[b] && outside(a, b) && outside(b, a)
     }
-}
-
-fn root(parents: &mut [usize], mut node: usize) -> usize {
-    while parents[node] != node {
-        parents[node] = parents[parents[node]];
-        node = parents[node];
-    }
-    node
 }

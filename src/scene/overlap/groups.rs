@@ -27,20 +27,12 @@ impl Merger<'_> {
         material.maps == Maps::default() && flat && uncoloured
     }
 
-    pub(super) fn root(&mut self, mut face: usize) -> usize {
-        while self.parent[face] != face {
-            self.parent[face] = self.parent[self.parent[face]];
-            face = self.parent[face];
-        }
-        face
-    }
-
     /// Of faces of one light that overlap, leaves those that cover the whole by themselves, or puts in their place what they cover together, without what
     /// earlier ones of another light cover.
     pub(super) fn unite(&mut self, edits: &mut Edits) {
         let mut groups: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for index in (0..self.faces.len()).filter(|index| !self.dropped[*index]).collect::<Vec<_>>() {
-            groups.entry(self.root(index)).or_default().push(index);
+            groups.entry(self.sets.of(index)).or_default().push(index);
         }
         for group in groups.into_values() {
             let none = Vec::new();

@@ -8,6 +8,7 @@ use super::edits::Edits;
 use super::face::{Face, Relation};
 use super::report::{Found, Report};
 use super::search::{Near, select};
+use crate::scene::sets::Sets;
 use crate::scene::{Material, Scene};
 use glam::{DVec3, Vec3};
 use std::collections::{BTreeMap, HashMap};
@@ -30,8 +31,8 @@ pub(super) struct Merger<'a> {
     /// Materials that only differ by which sides shine: the new ones, and by the old one's number and sides the new one's.
     variants: Vec<Material>,
     variant_of: BTreeMap<(u32, bool), u32>,
-    /// Faces of one light that overlap, as a forest: the parent of each.
-    pub parent: Vec<usize>,
+    /// Faces of one light that overlap are in one set.
+    pub sets: Sets,
     /// By face: with how many later ones of its light it overlaps.
     pub overlaps: Vec<u32>,
     /// By face: earlier ones of another light, which cover a part of it.
@@ -60,7 +61,7 @@ impl Scene {
             told: vec![false; count],
             variants: Vec::new(),
             variant_of: BTreeMap::new(),
-            parent: (0..count).collect(),
+            sets: Sets::new(count),
             overlaps: vec![0; count],
             covered_by: BTreeMap::new(),
             cut_out: Vec::new(),
@@ -259,8 +260,7 @@ impl Merger<'_> {
             self.part(a, b);
         } else if self.alike(a, b) && self.one_sided(a) == self.one_sided(b) {
             self.overlaps[a] += 1;
-            let (a, b) = (self.root(a), self.root(b));
-            self.parent[a.max(b)] = a.min(b);
+            self.sets.join(a, b);
         } else if self.material(a).has_holes() {
             // What is behind it shows through.
             let face = self.faces[b].clone();

@@ -1,5 +1,6 @@
 //! Faces of a closed body that are drawn into it by a hair, with the vertices that they share, so that it stays closed.
 
+use crate::scene::sets::Sets;
 use crate::scene::{Mesh, Triangle, outward};
 use glam::{DVec3, Vec3};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -108,7 +109,7 @@ impl<'a> Around<'a> {
 
     /// Parts the triangles of a place by the bodies that they belong to, and adds these.
     fn add_fans(&mut self, place: &[(usize, usize)]) {
-        let mut parents: Vec<usize> = (0..place.len()).collect();
+        let mut sets = Sets::new(place.len());
         // By the other end of an edge: where in `place`, and the third corner.
         let mut edges: BTreeMap<[u32; 3], Vec<(usize, usize)>> = BTreeMap::new();
         for (at, &(number, corner)) in place.iter().enumerate() {
@@ -121,12 +122,12 @@ impl<'a> Around<'a> {
         for (end, faces) in edges {
             let end = Vec3::from_array(end.map(f32::from_bits));
             for (a, b) in self.partners(place, start, end, &faces) {
-                join(&mut parents, a, b);
+                sets.join(a, b);
             }
         }
         let mut fans: BTreeMap<usize, Vec<(usize, usize)>> = BTreeMap::new();
         for (at, face) in place.iter().enumerate() {
-            fans.entry(root(&mut parents, at)).or_default().push(*face);
+            fans.entry(sets.of(at)).or_default().push(*face);
         }
         self.fans.extend(fans.into_values());
     }
@@ -189,7 +190,7 @@ impl<'a> Around<'a> {
     fn solve(&self, depth: impl Fn(u32) -> Option<f64>) -> Pulled {
         let depths: Vec<Option<f64>> = self.triangles.iter().map(|triangle| depth(*triangle)).collect();
         let mut moves = vec![[DVec3::ZERO; 3]; self.triangles.len()];
-        let mut parents: Vec<usize> = (0..self.triangles.len()).collect();
+        let mut sets = Sets::new(self.triangles.len());
         let mut bad = vec![false; self.triangles.len()];
         for fan in &self.fans {
             let asked: Vec<(DVec3, f64)> = fan
@@ -201,7 +202,7 @@ impl<'a> Around<'a> {
             }
             let by = moved(&asked);
             for &(number, corner) in fan {
-                join(&mut parents, fan[0].0, number);
+                sets.join(fan[0].0, number);
                 match by {
                     Some(by) => moves[number][corner] = by,
                     None => bad[number] = true,
@@ -213,14 +214,14 @@ impl<'a> Around<'a> {
         }
         let mut extents: HashMap<usize, (Vec3, Vec3)> = HashMap::new();
         for number in 0..moves.len() {
-            let extent = extents.entry(root(&mut parents, number)).or_insert((Vec3::INFINITY, Vec3::NEG_INFINITY));
+            let extent = extents.entry(sets.of(number)).or_insert((Vec3::INFINITY, Vec3::NEG_INFINITY));
             for p in [0, 1, 2].map(|k| self.corner(number, k)) {
                 *extent = (extent.0.min(p), extent.1.max(p));
             }
         }
         let mut bad_bodies = BTreeSet::new();
         for (number, depth) in depths.iter().enumerate() {
-            let body = root(&mut parents, number);
+            let body = sets.of(number);
             let (low, high) = extents[&body];
             if bad[number] || depth.is_some_and(|depth| depth > MOST_SEEN * f64::from(low.distance(high))) {
                 bad_bodies.insert(body);
@@ -228,7 +229,7 @@ impl<'a> Around<'a> {
         }
         let mut pulled = Pulled::default();
         for (number, by) in moves.into_iter().enumerate() {
-            if bad_bodies.contains(&root(&mut parents, number)) {
+            if bad_bodies.contains(&sets.of(number)) {
                 pulled.stuck.extend(depths[number].map(|_| self.triangles[number]));
             } else if by != [DVec3::ZERO; 3] {
                 pulled.corners.insert(self.triangles[number], by);
@@ -268,20 +269,6 @@ fn moved(asked: &[(DVec3, f64)]) -> Option<DVec3> {
 /// The bits of a place; zero has one sign.
 fn bits(position: Vec3) -> [u32; 3] {
     position.to_array().map(|x| (x + 0.0).to_bits())
-}
-
-/// The least member of a set of a forest of sets.
-fn root(parents: &mut [usize], mut node: usize) -> usize {
-    while parents[node] != node {
-        parents[node] = parents[parents[node]];
-        node = parents[node];
-    }
-    node
-}
-
-fn join(parents: &mut [usize], a: usize, b: usize) {
-    let (a, b) = (root(parents, a), root(parents, b));
-    parents[a.max(b)] = a.min(b);
 }
 
 #[cfg(test)]

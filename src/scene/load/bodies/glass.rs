@@ -1,6 +1,7 @@
 //! The glass of a mesh: its triangles, the edges that are not closed, and the surfaces that these connect.
 
 use super::split::between;
+use crate::scene::sets::Sets;
 use crate::scene::{Mesh, Object, Scene, outward};
 use glam::{DVec3, Vec3};
 use std::collections::{HashMap, HashSet};
@@ -98,7 +99,7 @@ impl Glass {
         }
         edges.sort_unstable();
         self.split(&welded.places, &mut edges);
-        let mut parents: Vec<u32> = (0..self.faces.len() as u32).collect();
+        let mut sets = Sets::new(self.faces.len());
         let mut faulty = Vec::new();
         let mut doubled = HashSet::new();
         for edge in edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
@@ -108,16 +109,15 @@ impl Glass {
             }
             doubled.extend(self.on_each_other(&welded.places, edge));
             for pair in edge.windows(2) {
-                let (a, b) = (root(&mut parents, pair[0].3), root(&mut parents, pair[1].3));
-                parents[a.max(b) as usize] = a.min(b);
+                sets.join(pair[0].3 as usize, pair[1].3 as usize);
             }
         }
         self.doubled = doubled.len();
         let mut surfaces = 0;
         for number in 0..self.faces.len() {
-            let parent = root(&mut parents, number as u32) as usize;
-            self.faces[number].surface = if parent == number { surfaces } else { self.faces[parent].surface };
-            surfaces += u32::from(parent == number);
+            let first = sets.of(number);
+            self.faces[number].surface = if first == number { surfaces } else { self.faces[first].surface };
+            surfaces += u32::from(first == number);
         }
         self.is_loose = vec![false; surfaces as usize];
         if faulty.is_empty() {
@@ -281,14 +281,4 @@ impl Welded {
 /// The bits of a position; zero has one sign.
 fn bits(position: Vec3) -> [u32; 3] {
     position.to_array().map(|x| (x + 0.0).to_bits())
-}
-
-/// The least member of a set of a forest of sets.
-pub(super) fn root(parents: &mut [u32], mut node: u32) -> u32 {
-    while parents[node as usize] != node {
-        let parent = parents[node as usize];
-        parents[node as usize] = parents[parent as usize];
-        node = parent;
-    }
-    node
 }

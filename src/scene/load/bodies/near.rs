@@ -1,6 +1,6 @@
 //! Points that are meant to be one, but for the rounding of numbers.
 
-use super::glass::root;
+use crate::scene::sets::Sets;
 use glam::DVec3;
 use std::collections::HashMap;
 
@@ -11,7 +11,7 @@ const MOST_PAIRS: usize = 1 << 24;
 #[derive(Default)]
 pub(super) struct Near {
     points: Vec<(DVec3, f64)>,
-    parents: Vec<u32>,
+    sets: Sets,
     /// By cell of a grid, the points whose reach touches it.
     cells: HashMap<[i64; 3], Vec<u32>>,
     cell: f64,
@@ -26,7 +26,7 @@ impl Near {
 
     /// Finds out which points are one, when all have been added.
     pub fn join(&mut self) {
-        self.parents = (0..self.points.len() as u32).collect();
+        self.sets = Sets::new(self.points.len());
         // Most points then touch one cell.
         self.cell = self.points.iter().fold(f64::MIN_POSITIVE, |most, (_, reach)| most.max(8.0 * reach));
         let mut pairs = 0;
@@ -43,8 +43,7 @@ impl Near {
                             }
                             let (at, of_other) = self.points[other as usize];
                             if at.distance(*point) <= reach.max(of_other) {
-                                let (a, b) = (root(&mut self.parents, number), root(&mut self.parents, other));
-                                self.parents[a.max(b) as usize] = a.min(b);
+                                self.sets.join(number as usize, other as usize);
                             }
                         }
                         others.push(number);
@@ -56,7 +55,7 @@ impl Near {
 
     /// The number that stands for a point and all that are one with it.
     pub fn one(&mut self, number: u32) -> u32 {
-        root(&mut self.parents, number)
+        self.sets.of(number as usize) as u32
     }
 
     /// The number that stands for the points at a place, if there are any.

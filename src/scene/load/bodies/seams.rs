@@ -3,9 +3,10 @@
 //! Only edges that a mesh does not close by itself are compared, in world space. Two of them are one where their ends lie as near to each other as
 //! the numbers of files and the rounding of transforms can tell.
 
-use super::glass::{Glass, Loose, SAME_INDEX, Use, root};
+use super::glass::{Glass, Loose, SAME_INDEX, Use};
 use super::near::Near;
 use super::split::between;
+use crate::scene::sets::Sets;
 use crate::scene::{Mesh, Object, Scene, moved_box, widen};
 use glam::{DAffine3, DVec3};
 use std::collections::{BTreeSet, HashMap, HashSet};
@@ -84,12 +85,12 @@ enum State {
 /// Of a surface that is flat, a point and the normal.
 type Plane = Option<(DVec3, DVec3)>;
 
-/// The surfaces with loose edges, as a forest: those that have an edge in common are joined.
+/// The surfaces with loose edges: those that have an edge in common are in one set.
 #[derive(Default)]
 struct Parts {
     list: Vec<Part>,
     numbers: HashMap<Part, u32>,
-    parents: Vec<u32>,
+    sets: Sets,
 }
 
 impl Parts {
@@ -98,14 +99,18 @@ impl Parts {
         let number = *self.numbers.entry(part).or_insert(next);
         if number == next {
             self.list.push(part);
-            self.parents.push(next);
+            self.sets.add();
         }
         number
     }
 
     fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (root(&mut self.parents, a), root(&mut self.parents, b));
-        self.parents[a.max(b) as usize] = a.min(b);
+        self.sets.join(a as usize, b as usize);
+    }
+
+    /// The part that stands for a part and all that are joined with it.
+    fn root(&mut self, part: u32) -> u32 {
+        self.sets.of(part as usize) as u32
     }
 }
 
@@ -128,7 +133,7 @@ impl Seams {
         let mut open: HashSet<u32> = HashSet::new();
         for (candidate, state) in candidates.iter().zip(&states) {
             if *state != State::Closed {
-                open.insert(root(&mut parts.parents, candidate.part));
+                open.insert(parts.root(candidate.part));
             }
         }
         let planes: Vec<_> = uses.iter().map(|of| of.glass.planes()).collect();
@@ -151,7 +156,7 @@ impl Seams {
             }
             first += count;
             for (surface, _) in (0..).zip(&planes[of]).filter(|(_, plane)| plane.is_some()) {
-                let alone = parts.numbers.get(&(object, surface)).map(|part| root(&mut parts.parents, *part));
+                let alone = parts.numbers.get(&(object, surface)).copied().map(|part| parts.root(part));
                 if alone.is_none_or(|root| flat.contains(&root)) {
                     found.sheets.insert(surface);
                 }
@@ -168,7 +173,7 @@ impl Seams {
         }
         let mut bodies: HashMap<u32, Vec<Part>> = HashMap::new();
         for number in 0..parts.list.len() as u32 {
-            let root = root(&mut parts.parents, number);
+            let root = parts.root(number);
             if !open.contains(&root) {
                 bodies.entry(root).or_default().push(parts.list[number as usize]);
             }
@@ -368,7 +373,7 @@ fn flat(scene: &Scene, planes: &[Vec<Plane>], candidates: &[Candidate], parts: &
     let mut bent: HashSet<u32> = HashSet::new();
     let mut seen = HashSet::new();
     for candidate in candidates.iter().filter(|candidate| seen.insert(candidate.part)) {
-        let root = root(&mut parts.parents, candidate.part);
+        let root = parts.root(candidate.part);
         let Some((at, normal)) = planes[candidate.of][candidate.loose.surface as usize] else {
             bent.insert(root);
             continue;
