@@ -5,9 +5,9 @@ use crate::memory::{available, gib, threads_demand};
 use crate::{Error, Result};
 
 /// Bytes a pixel of the sums and the numbers of samples.
-const FILM: u64 = 24 * BLOCKS as u64 + 4;
-/// The means of all samples, which every file needs.
-const MEANS: u64 = 12;
+pub(crate) const FILM_BYTES: u64 = 24 * BLOCKS as u64 + 4;
+/// Bytes a pixel of the means of all samples, which every file needs.
+pub(crate) const MEAN_BYTES: u64 = 12;
 /// Eight bits a channel, and what they deflate to.
 const PNG: u64 = 6;
 /// The standard error, the relative error and the fireflies.
@@ -18,7 +18,7 @@ const EXR: u64 = 24;
 const AOVS: u64 = 32;
 const AOV_CHANNELS: u64 = 32;
 /// The sums and the numbers of samples once more, as the channels of an EXR file.
-const SUMS: u64 = FILM;
+const SUMS: u64 = FILM_BYTES;
 
 /// The samples that met nothing, alpha as numbers, and colours that are not multiplied by it, with their eight bits.
 const ALPHA: u64 = 4 + 4 + 12 + 4;
@@ -49,10 +49,10 @@ impl Demand {
     /// Bytes of memory that are taken at most: by the film, and by the file that takes most, since one is written after the other. Scene, driver and program are
     /// not counted.
     pub fn bytes(&self) -> u64 {
-        let exr = MEANS + ERRORS + EXR;
+        let exr = MEAN_BYTES + ERRORS + EXR;
         let aovs = if self.aovs { AOVS } else { 0 };
         let files = [
-            MEANS + PNG,
+            MEAN_BYTES + PNG,
             if self.errors { ERRORS + PNG } else { 0 },
             if self.exr { exr } else { 0 },
             if self.aovs { exr + AOV_CHANNELS } else { 0 },
@@ -60,7 +60,7 @@ impl Demand {
             if self.sums { exr + SUMS } else { 0 },
         ];
         let alpha = if self.alpha { ALPHA } else { 0 };
-        FIXED + self.pixels() * (FILM + aovs + alpha + files.into_iter().max().unwrap_or(0))
+        FIXED + self.pixels() * (FILM_BYTES + aovs + alpha + files.into_iter().max().unwrap_or(0))
     }
 
     /// Bytes on disk of a checkpoint or a part at most: noise does not deflate.

@@ -12,7 +12,7 @@ pub struct ErrorEstimate {
     pub careful_rel_mse: f64,
     /// Pixels that are left out because they stand out of their neighbours by what few samples hold.
     pub fireflies: u64,
-    /// Pixels that are left out because they have samples in fewer than two parts, which tells nothing.
+    /// Pixels that are left out because they have samples in fewer than two blocks, which tells nothing.
     pub unknown: u64,
     /// `rel_mse` with the fireflies, as if their neighbours showed what they should look like. Where it is much larger, the picture either has fireflies or
     /// has not seen enough of its light.

@@ -17,6 +17,7 @@ pub use blocks::{BLOCKS, Blocks};
 pub use brightness::{Brightness, REL_MSE};
 pub use convergence::Convergence;
 pub use demand::Demand;
+pub(crate) use demand::{FILM_BYTES, MEAN_BYTES};
 pub use error::{ErrorMap, INTERVAL_95};
 pub use error_estimate::{ErrorEstimate, relative_in_words};
 pub use output::HDR_HAS_NO_ALPHA;

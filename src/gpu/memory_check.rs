@@ -6,7 +6,7 @@ use super::pack::texture::texel_count;
 use super::specialization::KernelModel;
 use super::vulkan::device::Device;
 use crate::memory::{available, gib};
-use crate::scene::{LuminaireTable, Scene};
+use crate::scene::{LightTree, LuminaireTable, Scene};
 use crate::{Error, Result};
 
 /// Bytes of the compute BVH's nodes for each triangle: 8.0 to 11.2 were measured, on meshes of 38 to 2 880 000 triangles.
@@ -40,10 +40,7 @@ impl Budget {
         let objects = scene.objects.len() as u64 * size_of::<layout::Object>() as u64;
         let texels = texel_count(&scene.textures);
         let image = scene.environment.as_ref().and_then(|environment| environment.image.as_ref());
-        let tree = table
-            .tree
-            .as_ref()
-            .map_or(0, |tree| tree.nodes.len() * size_of::<layout::LightNode>() + tree.paths.len() * size_of::<u64>());
+        let tree = table.tree.as_ref().map_or(0, LightTree::bytes);
         Budget {
             luminaires: (table.entries.len() * size_of::<layout::Luminaire>() + tree) as u64,
             geometry: triangles * triangle as u64 + objects,

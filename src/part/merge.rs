@@ -2,7 +2,7 @@
 
 use super::file::{about, read};
 use super::provenance::Provenance;
-use crate::film::BLOCKS;
+use crate::film::{FILM_BYTES, MEAN_BYTES};
 use crate::memory::{available, gib};
 use crate::picture::Development;
 use crate::render::Rendered;
@@ -10,17 +10,13 @@ use crate::{Error, Result};
 use std::ops::Range;
 use std::path::PathBuf;
 
-/// Bytes a pixel of a film, its sums and its numbers of samples.
-const FILM: u64 = 24 * BLOCKS as u64 + 4;
-/// The means that a picture is written from.
-const MEANS: u64 = 12;
-/// Beside these: decoded blocks of a file, and what is read of it before it is put into the film. Measured.
+/// Beside what grows with the picture: decoded blocks of a file, and what is read of it before it is put into the film. Measured.
 const FIXED: u64 = 40 << 20;
 
 /// Refuses parts of which the memory that is free cannot hold the whole, one of them, and the channels that it is read from.
 fn fits((width, height): (u32, u32), parts: usize, available: Option<u64>) -> Result<()> {
     let films = if parts > 1 { 3 } else { 2 };
-    let needed = FIXED + (films * FILM + MEANS) * u64::from(width) * u64::from(height);
+    let needed = FIXED + (films * FILM_BYTES + MEAN_BYTES) * u64::from(width) * u64::from(height);
     match available.filter(|free| needed > *free) {
         None => Ok(()),
         Some(free) => Err(Error::Limit {

@@ -75,7 +75,7 @@ pub fn lost_light_by(scene: &Scene, tracer: &mut Option<Reference>) -> Vec<Strin
         }
         let reference = tracer.get_or_insert_with(|| Reference::new(scene));
         // All light counts, also that of a sky which is left to chance.
-        reference.set_integrator(&all_sampled(scene.integrator));
+        let own = reference.set_integrator(&all_sampled(scene.integrator));
         let seen = reference.light_on_what_is_seen();
         if sampled {
             sentences.extend(reference.lost_of_luminaires(&seen));
@@ -83,7 +83,10 @@ pub fn lost_light_by(scene: &Scene, tracer: &mut Option<Reference>) -> Vec<Strin
         if may_be_short {
             sentences.extend(too_short(scene, &seen));
         }
-        reference.set_integrator(&scene.integrator);
+        reference.scene.integrator = scene.integrator;
+        if let Some(own) = own {
+            reference.luminaires = own;
+        }
     }
     sentences
 }
@@ -280,9 +283,8 @@ impl Reference {
             let vertices = self.first_vertices(pixel as u32, path, VERTICES);
             for (bounce, vertex) in (0..).zip(&vertices) {
                 let random = random4(path, bounce, 1, 0);
-                let Some((radiance, light)) = self.unoccluded_light(vertex, random) else { continue };
+                let Some((radiance, at, light)) = self.unoccluded_light(vertex, random) else { continue };
                 let Some((surfaces, passed)) = self.straight_through(&light, random[3]) else { continue };
-                let at = light.luminaire;
                 let (side, lost) = match &self.luminaires.entries[at] {
                     SampledLuminaire::Impulse(_) => (&mut seen.impulses[at], surfaces > 0),
                     _ => {
@@ -295,17 +297,18 @@ impl Reference {
         seen
     }
 
-    /// The light of a luminaire that a vertex would send on to the camera if nothing were between, averaged over the channels; none if there is none.
-    fn unoccluded_light(&self, vertex: &Vertex, random: [u32; 4]) -> Option<(f64, Unoccluded)> {
+    /// The light of a luminaire that a vertex would send on to the camera if nothing were between, averaged over the channels, and its index into the table;
+    /// none if there is none.
+    fn unoccluded_light(&self, vertex: &Vertex, random: [u32; 4]) -> Option<(f64, usize, Unoccluded)> {
         let wo = -vertex.direction;
         let surfel = self.surfel(vertex.hit.as_ref()?, wo);
         if !surfel.scatters() {
             return None;
         }
-        let light = self.sample_luminaire(&surfel, random)?;
+        let (at, light) = self.sample_luminaire(&surfel, random)?;
         let cosine = surfel.shading_normal.dot(light.wi).max(0.0);
         let radiance = mean(vertex.throughput * surfel.bsdf(wo, light.wi) * cosine * light.irradiance);
-        (radiance > 0.0 && radiance.is_finite()).then_some((radiance, light))
+        (radiance > 0.0 && radiance.is_finite()).then_some((radiance, at, light))
     }
 
     /// How many surfaces of glass are between, and about how much of the light they let through; none if something else is in the way.

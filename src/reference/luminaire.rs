@@ -20,8 +20,6 @@ pub const LEAST_SOLID_ANGLE: f64 = 1e-3;
 
 /// Light that would arrive from a luminaire if nothing were between.
 pub(super) struct Unoccluded {
-    /// Which it is: an index into the table.
-    pub(super) luminaire: usize,
     /// Unit direction to the luminaire.
     pub(super) wi: DVec3,
     /// Irradiance on a surface perpendicular to `wi`, over the probability of this sample.
@@ -55,7 +53,7 @@ impl Reference {
         if !surfel.scatters() {
             return DVec3::ZERO;
         }
-        let Some(light) = self.sample_luminaire(surfel, random) else { return DVec3::ZERO };
+        let Some((_, light)) = self.sample_luminaire(surfel, random) else { return DVec3::ZERO };
         let cosine = surfel.shading_normal.dot(light.wi).max(0.0);
         let estimator = self.scene.integrator.estimator();
         let weight = match (light.pdf, estimator.light_sampling) {
@@ -78,11 +76,11 @@ impl Reference {
     /// The direction in which light sampling looks from a surfel with these numbers, and the density that the power heuristic is given for
     /// it; none where no other ray can find the luminaire.
     pub fn sampled_direction(&self, surfel: &Surfel, random: [u32; 4]) -> Option<(DVec3, f64)> {
-        self.sample_luminaire(surfel, random).and_then(|light| Some((light.wi, light.pdf?)))
+        self.sample_luminaire(surfel, random).and_then(|(_, light)| Some((light.wi, light.pdf?)))
     }
 
-    /// Chooses a luminaire and a point on it.
-    pub(super) fn sample_luminaire(&self, surfel: &Surfel, random: [u32; 4]) -> Option<Unoccluded> {
+    /// Chooses a luminaire, by its index into the table, and a point on it.
+    pub(super) fn sample_luminaire(&self, surfel: &Surfel, random: [u32; 4]) -> Option<(usize, Unoccluded)> {
         let (chosen, probability, ideal) = self.choose_luminaire(surfel, random)?;
         let light = match &self.luminaires.entries[chosen] {
             SampledLuminaire::Impulse(luminaire) => impulse(surfel, luminaire, probability),
@@ -94,18 +92,10 @@ impl Reference {
                 let pdf = probability * density;
                 let irradiance = self.environment_radiance(wi) / pdf;
                 let origin = surfel.offset_ray_origin(wi);
-                Some(Unoccluded {
-                    luminaire: chosen,
-                    wi,
-                    irradiance,
-                    pdf: Some(pdf),
-                    origin,
-                    direction: wi,
-                    t_max: f64::INFINITY,
-                })
+                Some(Unoccluded { wi, irradiance, pdf: Some(pdf), origin, direction: wi, t_max: f64::INFINITY })
             }
         };
-        light.map(|light| Unoccluded { luminaire: chosen, ..light })
+        light.map(|light| (chosen, light))
     }
 
     /// A point on an emissive triangle, which was chosen with a probability, and another one for the power heuristic: radiance over the density of
@@ -139,7 +129,6 @@ impl Reference {
         let origin = surfel.offset_ray_origin(wi);
         let target = offset_ray_origin(point, position_error(triangle.vertices), triangle.normal, -wi);
         Some(Unoccluded {
-            luminaire: 0,
             wi,
             irradiance: self.emission_at(triangle, weights) / (probability * density),
             pdf: Some(ideal * density),
@@ -216,21 +205,13 @@ fn impulse(surfel: &Surfel, luminaire: &Luminaire, probability: f64) -> Option<U
             let wi = to_light.try_normalize()?;
             let irradiance = intensity.as_dvec3() / to_light.length_squared() / probability;
             let origin = surfel.offset_ray_origin(wi);
-            Some(Unoccluded {
-                luminaire: 0,
-                wi,
-                irradiance,
-                pdf: None,
-                origin,
-                direction: position - origin,
-                t_max: 1.0,
-            })
+            Some(Unoccluded { wi, irradiance, pdf: None, origin, direction: position - origin, t_max: 1.0 })
         }
         Luminaire::Infinite { direction, irradiance } => {
             let wi = -direction.as_dvec3();
             let irradiance = irradiance.as_dvec3() / probability;
             let origin = surfel.offset_ray_origin(wi);
-            Some(Unoccluded { luminaire: 0, wi, irradiance, pdf: None, origin, direction: wi, t_max: f64::INFINITY })
+            Some(Unoccluded { wi, irradiance, pdf: None, origin, direction: wi, t_max: f64::INFINITY })
         }
     }
 }

@@ -54,13 +54,11 @@ impl Reference {
         Reference { scene: scene.clone(), instances, trees: None, luminaires, coats, filter }
     }
 
-    /// Takes another integrator. Which luminaires are sampled, and how often, may depend on it.
-    pub(super) fn set_integrator(&mut self, integrator: &Integrator) {
+    /// Takes another integrator. Which luminaires are sampled, and how often, may depend on it: returns the table that there was, if another one was made.
+    pub(super) fn set_integrator(&mut self, integrator: &Integrator) -> Option<LuminaireTable> {
         let same = LuminaireTable::is_same_for(&self.scene, integrator);
         self.scene.integrator = *integrator;
-        if !same {
-            self.luminaires = LuminaireTable::new(&self.scene);
-        }
+        (!same).then(|| std::mem::replace(&mut self.luminaires, LuminaireTable::new(&self.scene)))
     }
 
     /// World-space corners of a triangle of an object.

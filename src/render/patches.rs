@@ -1,12 +1,11 @@
 //! How a render with shares is cut into batches.
 
+use super::schedule::MAX_PASS;
 use super::shares::Shares;
 use crate::film::{Batch, Film, GROUPS_IN_TURN, LONGEST_GROUP, Tile};
 
 /// An invocation of the kernel takes so many samples.
 const IN_TURN: u32 = LONGEST_GROUP * GROUPS_IN_TURN;
-/// The most samples of a pixel in one batch.
-const MOST: u64 = 65_535 * IN_TURN as u64;
 
 /// Goes over the tiles of a film, row by row from the top: those that lie beside each other and want the same samples are rendered at once.
 #[derive(Debug)]
@@ -56,7 +55,7 @@ impl Patches {
             (width, next) = (width + more, next + 1);
         }
         // As many rounds as fit; how they are cut does not show in the picture.
-        let mut samples = u64::from(wanted.1).min(MOST) as u32;
+        let mut samples = u64::from(wanted.1).min(MAX_PASS) as u32;
         while samples > LONGEST_GROUP && !fits(width, samples) {
             samples = (samples / 2).next_multiple_of(if samples > 2 * IN_TURN { IN_TURN } else { LONGEST_GROUP });
         }

@@ -3,7 +3,7 @@
 use crate::film::{Batch, Film, GROUPS_IN_TURN, LONGEST_GROUP, Tile, group_length};
 
 /// The most samples of a pixel in one batch: a workgroup for what an invocation takes, and as many as every Vulkan device takes along an axis.
-const MAX_PASS: u64 = 65_535 * (LONGEST_GROUP * GROUPS_IN_TURN) as u64;
+pub(super) const MAX_PASS: u64 = 65_535 * (LONGEST_GROUP * GROUPS_IN_TURN) as u64;
 
 /// Where the groups end that one invocation of the kernel takes in turn, among them the one with sample `start`.
 fn groups_end(start: u32) -> u32 {

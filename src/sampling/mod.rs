@@ -9,7 +9,7 @@
 //! | block | number 0 | number 1 | number 2 | number 3 |
 //! |---|---|---|---|---|
 //! | 0, [`SENSOR_BLOCK`] | pixel x | pixel y | lens u | lens v |
-//! | [`light_block`]`(b)` | point on the luminaire, u | point on it, v | which luminaire | nothing |
+//! | [`light_block`]`(b)` | point on the luminaire, u | point on it, v | which luminaire | further bits of that, for a tree of many |
 //! | [`scatter_block`]`(b)` | direction, u | direction, v | which lobe | extinction |
 //!
 //! On the environment, the point is a direction: the first number chooses the row of its image and how far down in it, the second one the column ([`Cdf`]).

@@ -127,7 +127,8 @@ impl LuminaireTable {
         LuminaireTable { choice, entries, environment, area_density, least_probability, tree }
     }
 
-    /// Whether the table of a scene would be the same with another integrator: with a sky it depends on what else finds its light.
+    /// Whether what is sampled of a scene's light would be the same with another integrator: with a sky it depends on what else finds its light. (Whether there is a
+    /// tree is left out: a tracer that has one need not choose by it, and one that has none chooses by power.)
     pub fn is_same_for(scene: &Scene, integrator: &Integrator) -> bool {
         scene.environment.is_none() || left_to_paths(scene, &scene.integrator) == left_to_paths(scene, integrator)
     }

@@ -97,6 +97,11 @@ impl LightTree {
         tree
     }
 
+    /// Bytes that nodes and paths take, here and on the device.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.nodes[..]) + size_of_val(&self.paths[..])
+    }
+
     /// The way to the leaf of an emissive triangle; none if it is never chosen.
     pub fn path(&self, scene: &Scene, object: u32, triangle: u32) -> Option<u64> {
         let placed = &scene.objects[object as usize];

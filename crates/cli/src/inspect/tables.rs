@@ -1,7 +1,6 @@
 //! The tables of `luminaire inspect`.
 
 use luminaire::glam::{Affine2, DVec3, Vec2, Vec3};
-use luminaire::scene::light_tree::LightNode;
 use luminaire::scene::{Environment, LightTree, Luminaire, LuminaireTable, Material, Mesh, SampledLuminaire, Scene};
 
 /// Meshes and what they have.
@@ -181,12 +180,11 @@ pub(super) fn luminaires(scene: &Scene) -> Vec<Vec<String>> {
         ]);
     }
     if let Some(tree) = &table.tree {
-        let bytes = tree.nodes.len() * size_of::<LightNode>() + tree.paths.len() * size_of::<u64>();
         let size = format!("{} in {}", counted(tree.nodes.len(), "node"), counted(tree.levels as usize, "level"));
         rows.push(vec![
             "light tree".into(),
             size,
-            format!("{:.1} KiB", bytes as f64 / 1024.0),
+            format!("{:.1} KiB", tree.bytes() as f64 / 1024.0),
             percent(tree.probability),
         ]);
     }
