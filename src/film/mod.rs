@@ -9,6 +9,7 @@ mod demand;
 mod error;
 mod error_estimate;
 mod output;
+mod pixel_error;
 
 pub use aov::{AovSum, Aovs};
 pub use batch::{Batch, GROUPS_IN_TURN, MOST_RADIANCE, PixelSum, Rays, SampleId, Tile};
