@@ -55,3 +55,5 @@ lint: ## format, clippy and documentation, without changing anything
 	cargo fmt --all --check
 	cargo clippy --release --workspace --all-targets -- -D warnings
 	RUSTDOCFLAGS="-D warnings" cargo doc --release --workspace --no-deps --document-private-items
+	@if command -v python3 > /dev/null; then python3 scripts/mutations.py --fit; \
+	else echo "SKIP: python3 is not here; whether scripts/mutations.py fits the source is not checked"; fi

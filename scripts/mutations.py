@@ -4,6 +4,7 @@
     python3 scripts/mutations.py            all of them: half an hour on two cores
     python3 scripts/mutations.py eta half   those whose names contain one of the words
     python3 scripts/mutations.py --list
+    python3 scripts/mutations.py --fit      only whether each of them still fits the source; runs nothing
 
 The copy is what git has of the working tree (tracked files as they are now), in target/mutations. Wants what `make test` wants. Exit code
 0 if every bug is caught, 1 if one is not, 2 if a bug does not fit the source any more or the tests cannot be run.
@@ -11,8 +12,10 @@ The copy is what git has of the working tree (tracked files as they are now), in
 
 import os
 import shutil
+import signal
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -187,14 +190,33 @@ def run(arguments):
         "LUMINAIRE_REQUIRE_GPU": "1",
         "RUST_BACKTRACE": "0",
     }
-    done = subprocess.run(["cargo", "test", "--release", *arguments], cwd=COPY, env=environment, capture_output=True, text=True)
-    if done.returncode == 0:
+    cargo = subprocess.Popen(
+        ["cargo", "test", "--release", *arguments], cwd=COPY, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        text=True, start_new_session=True)
+    # What cargo says is kept beside, lest a full pipe holds it up.
+    said = []
+    reader = threading.Thread(target=lambda: said.extend(cargo.stderr), daemon=True)
+    reader.start()
+    for line in cargo.stdout:
+        if line.startswith("test ") and line.rstrip().endswith("FAILED"):
+            # One is enough.
+            os.killpg(cargo.pid, signal.SIGKILL)
+            cargo.wait()
+            return f"{arguments[1] if len(arguments) > 1 else arguments[0]}: {line.split()[1]}"
+    if cargo.wait() == 0:
         return None
-    failed = [line.split()[1] for line in done.stdout.splitlines() if line.startswith("test ") and line.endswith("FAILED")]
-    if not failed:
-        print(f"the copy does not build, or the tests do not run:\n{done.stderr[-3000:]}", file=sys.stderr)
-        sys.exit(2)
-    return f"{arguments[1]}: {failed[0]}" + (f" and {len(failed) - 1} more" if len(failed) > 1 else "")
+    reader.join()
+    print(f"the copy does not build, or the tests do not run:\n{''.join(said)[-3000:]}", file=sys.stderr)
+    sys.exit(2)
+
+
+def misfits():
+    """The bugs whose place is not in the source exactly once."""
+    for name, file, old, new, _ in MUTATIONS:
+        path = ROOT / file
+        found = path.read_text().count(old) if path.is_file() else 0
+        if found != 1 or old == new:
+            yield f"{name}: `{old}` stands {found} times in {file}, not once"
 
 
 def mutate(name, file, old, new, tests):
@@ -220,6 +242,10 @@ def main():
     if words == ["--list"]:
         print("\n".join(f"{name}: {file}" for name, file, *_ in MUTATIONS))
         return
+    if words == ["--fit"]:
+        found = list(misfits())
+        print("\n".join(found) or f"all {len(MUTATIONS)} fit", file=sys.stderr if found else sys.stdout)
+        sys.exit(2 if found else 0)
     if any(word.startswith("-") for word in words):
         print(__doc__, file=sys.stderr)
         sys.exit(2)
