@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Do the tests notice wrong physics? Applies deliberate bugs one by one to a copy, and runs the tests there until one fails.
 
-    python3 scripts/mutations.py            all of them: half an hour on two cores
+    python3 scripts/mutations.py            all of them: an hour on two cores
     python3 scripts/mutations.py eta half   those whose names contain one of the words
     python3 scripts/mutations.py --list
     python3 scripts/mutations.py --fit      only whether each of them still fits the source; runs nothing
@@ -11,7 +11,6 @@ The copy is what git has of the working tree (tracked files as they are now), in
 """
 
 import os
-import shutil
 import signal
 import subprocess
 import sys
@@ -174,10 +173,15 @@ def copy():
         source, target = ROOT / name, COPY / name
         if not source.is_file():
             continue
-        if target.is_file() and target.read_bytes() == source.read_bytes():
+        content = source.read_bytes()
+        if name == "Cargo.toml":
+            # In many pieces, most of which a bug leaves as they are.
+            content = content.replace(b"luminaire = { codegen-units = 1 }", b"luminaire = { codegen-units = 64 }")
+        if target.is_file() and target.read_bytes() == content:
             continue
         target.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy(source, target)
+        target.write_bytes(content)
+        target.chmod(source.stat().st_mode)
 
 
 def run(arguments):
