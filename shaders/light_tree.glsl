@@ -1,5 +1,5 @@
 // The choice of a luminaire by the light tree (twin: src/reference/light_tree.rs): down from the root with one random number, each child in
-// proportion to what may arrive of it.
+// proportion to what may arrive of it. A second number chooses between the tree and what stands beside it, and has further bits.
 
 // What is added to a ball's apparent size against the surface's horizon, for rounding.
 const float HORIZON_MARGIN = 1e-4;
@@ -75,27 +75,22 @@ bool light_cuts(vec3 p, vec3 n, uint node, uint width, out uvec3 cuts) {
 bool choose_by_tree(vec3 p, vec3 n, uint random, uint more, out uint luminaire, out float probability) {
     uvec4 header = texelFetch(light_tree, 0);
     uint slot, number;
-    umulExtended(random, header.x, slot, number);
+    umulExtended(more, header.x, slot, number);
     uvec4 entry = texelFetch(light_tree, LIGHT_TREE_HEADER + int(slot));
-    uint width = entry.x;
-    if (number >= entry.x) {
-        number -= entry.x;
-        width = 0u - entry.x;
-        entry = texelFetch(light_tree, LIGHT_TREE_HEADER + int(entry.z));
-    }
+    if (number >= entry.x) entry = texelFetch(light_tree, LIGHT_TREE_HEADER + int(entry.z));
     luminaire = entry.y;
     probability = uintBitsToFloat(entry.w);
     if (luminaire != NONE) return true;
-    // None is all of them.
-    if (width == 0u) width = 0xffffffffu;
-    number = min(number, width - 1u);
+    uint width = 0xffffffffu;
+    number = min(random, width - 1u);
     float whole = float(width);
     uint node = header.y;
     while (true) {
         while (width < LEAST_WIDTH) {
+            // First, as the upper bits have chosen among what stands beside the tree; below those all are as likely.
+            more = more * 747796405u + 2891336453u;
             width <<= 8;
             number = number << 8 | more >> 24;
-            more = more * 747796405u + 2891336453u;
             whole *= 256.0;
         }
         uvec3 cuts;

@@ -51,7 +51,14 @@ float triangle_density(vec3 p, vec3 n, vec3 wi, Hit hit, float area_density) {
     float scale = largest(abs(normal));
     float double_area = scale * length(normal / scale);
     float area = 0.5 * double_area;
-    area_density = by_light_tree() ? tree_probability(p, n, light_path(hit)) / area : max(area_density, frame.least_probability / area);
+    if (by_light_tree()) {
+        float chosen = tree_probability(p, n, light_path(hit));
+        // One that is never chosen may be seen from the edge, where the density would be infinite.
+        if (chosen == 0.0) return 0.0;
+        area_density = chosen / area;
+    } else {
+        area_density = max(area_density, frame.least_probability / area);
+    }
     vec3 v[3];
     float omega;
     if (is_near(p, a, b, c, area, v, omega)) return area_density * area / omega;

@@ -1,7 +1,9 @@
 //! The choice of a luminaire by the light tree: down from the root with one random number, each child in proportion to what may arrive of it.
 //!
 //! The number is a whole one below the width of what is still possible, and a node cuts that width: what is left at the leaf, over the whole, is
-//! the probability to the last number. Where few numbers are left, further bits come from a second random number.
+//! the probability to the last number. Where few numbers are left, further bits come from a second random number, which first chooses between
+//! the tree and what stands beside it: so the way down always begins with the same width, and whoever asks for the probability of a leaf
+//! finds the very one with which it is chosen.
 
 use super::prepared_scene::Reference;
 use super::surfel::Surfel;
@@ -39,12 +41,18 @@ struct Numbers {
 }
 
 impl Numbers {
+    /// Those at the root.
+    fn all(number: u32, more: u32) -> Self {
+        Numbers { width: u32::MAX, whole: u32::MAX.into(), number, more }
+    }
+
     /// Makes sure that there are enough to cut.
     fn renew(&mut self) {
         while self.width < LEAST_WIDTH {
+            // First, as the upper bits have chosen among what stands beside the tree; below those all are as likely.
+            self.more = self.more.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
             self.width <<= 8;
             self.number = self.number << 8 | self.more >> 24;
-            self.more = self.more.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
             self.whole *= 256.0;
         }
     }
@@ -115,7 +123,7 @@ impl Reference {
         self.luminaires.tree.as_ref().filter(|_| self.scene.integrator.estimator().light_choice != LightChoice::Power)
     }
 
-    /// Index of a luminaire, chosen by number 2 of `random`, for which number 3 has further bits; the probability of that, and the one that the
+    /// Index of a luminaire, chosen by number 2 of `random`, or, by the tree, by 3 (between the tree and what stands beside it) and 2 (in the tree); the probability of that, and the one that the
     /// power heuristic is given. None if there is none, or if nothing can contribute to this surface.
     pub fn choose_luminaire(&self, surfel: &Surfel, random: [u32; 4]) -> Option<(usize, f64, f64)> {
         let Some(tree) = self.light_tree() else {
@@ -126,20 +134,15 @@ impl Reference {
             return Some((chosen, self.luminaires.choice.pdf[chosen], self.luminaires.ideal_probability(chosen)));
         };
         let slots = &tree.outer_choice.slots;
-        let product = u64::from(random[2]) * slots.len() as u64;
+        let product = u64::from(random[3]) * slots.len() as u64;
         let (slot, number) = ((product >> 32) as usize, product as u32);
         let (threshold, alias) = slots[slot];
-        let own = number < threshold;
-        let outer = if own { slot } else { alias as usize };
+        let outer = if number < threshold { slot } else { alias as usize };
         if let Some(entry) = tree.outer[outer] {
             let probability = tree.outer_choice.pdf[outer];
             return Some((entry as usize, probability, probability));
         }
-        let (number, width) = if own { (number, threshold) } else { (number - threshold, threshold.wrapping_neg()) };
-        // None is all of them.
-        let width = if width == 0 { u32::MAX } else { width };
-        let number = number.min(width - 1);
-        let mut numbers = Numbers { width, whole: width.into(), number, more: random[3] };
+        let mut numbers = Numbers::all(random[2].min(u32::MAX - 1), random[3]);
         let mut node = &tree.nodes[0];
         loop {
             numbers.renew();
@@ -161,7 +164,7 @@ impl Reference {
     /// The probability with which [`Reference::choose_luminaire`] gives an emissive triangle, by the tree, seen from a surface.
     pub fn tree_probability(&self, tree: &LightTree, from: &Surfel, object: u32, triangle: u32) -> f64 {
         let Some(mut path) = tree.path(&self.scene, object, triangle) else { return 0.0 };
-        let mut numbers = Numbers { width: u32::MAX, whole: u32::MAX.into(), number: 0, more: 0 };
+        let mut numbers = Numbers::all(0, 0);
         let mut node = &tree.nodes[0];
         loop {
             numbers.renew();

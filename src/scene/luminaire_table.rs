@@ -150,14 +150,17 @@ impl LuminaireTable {
 
     /// The probability of choosing the environment; 0 if there is none.
     pub fn environment_probability(&self) -> f64 {
-        // The last entry.
-        if self.environment.is_some() { self.choice.pdf.last().copied().unwrap_or(0.0) } else { 0.0 }
+        // The last entry, unless it had no power: in a scene without extent.
+        match self.entries.last() {
+            Some(SampledLuminaire::Environment) => self.choice.pdf.last().copied().unwrap_or(0.0),
+            _ => 0.0,
+        }
     }
 }
 
 /// How much of a sky's mean radiance is left to paths that escape. Where they go by the BSDF, and nothing but Russian roulette by the whole path
-/// ends them, they find an even sky better than light sampling does. The lobes of a surface share its paths, so that a weak one has few: there a
-/// quarter of the mean is sampled.
+/// ends them, they find an even sky better than light sampling does. The lobes of a surface share its paths, so that a weak one has few: where a
+/// material in use has several, whatever its maps make of them, a quarter of the mean is sampled.
 fn left_to_paths(scene: &Scene, integrator: &Integrator) -> f64 {
     let Estimator { light_sampling, directions, extinction, albedo_threshold, .. } = integrator.estimator();
     let found = light_sampling == LightSampling::Mis
@@ -168,7 +171,14 @@ fn left_to_paths(scene: &Scene, integrator: &Integrator) -> f64 {
     let several = |m: &Material| lobes(m).into_iter().filter(|has| *has).count() > 1;
     match found {
         false => 0.0,
-        true if scene.materials.iter().any(several) => 0.75,
+        true if scene
+            .materials
+            .iter()
+            .zip(scene.materials_in_use())
+            .any(|(material, used)| used && several(material)) =>
+        {
+            0.75
+        }
         true => 1.0,
     }
 }

@@ -39,6 +39,10 @@ pub fn summary(outcome: &Outcome, written: &[PathBuf]) -> String {
     if let (Some(limit), false) = (progress.limits.noise, matches!(rendered.end, End::Noise)) {
         text += &format!("--noise {limit} was not reached\n");
     }
+    if options.adaptive && rendered.shares.is_none() {
+        text +=
+            "--adaptive: every pixel got as many samples, because other numbers of them would not have saved enough\n";
+    }
     text += &format!(
         "load {}, build {}, render {}; {:.2} Mrays/s, {:.3} million samples/s\n",
         duration(seconds.load),
