@@ -158,6 +158,7 @@ impl Provenance {
         let mut compare = |what: &str, own: &dyn std::fmt::Display, others: &dyn std::fmt::Display| {
             let (own, others) = (own.to_string(), others.to_string());
             if own != others {
+                let (own, others) = apart(&own, &others);
                 found.push(format!("{what} ({own} there, {others} here)"));
             }
         };
@@ -174,6 +175,22 @@ impl Provenance {
         let names = self.digests.keys().chain(other.digests.keys().filter(|name| !self.digests.contains_key(*name)));
         found.extend(names.filter(|name| self.digests.get(*name) != other.digests.get(*name)).cloned());
         found
+    }
+}
+
+/// What differs between two values with named parts, as `Debug` shows them: those parts alone; else the values.
+fn apart(own: &str, others: &str) -> (String, String) {
+    let parts = |text: &str| -> Option<Vec<String>> {
+        let (_, inner) = text.split_once("{ ")?;
+        let (inner, _) = inner.rsplit_once(" }")?;
+        Some(inner.split(", ").map(str::to_owned).collect())
+    };
+    match (parts(own), parts(others)) {
+        (Some(a), Some(b)) if a.len() == b.len() => {
+            let (a, b): (Vec<_>, Vec<_>) = a.into_iter().zip(b).filter(|(a, b)| a != b).unzip();
+            (a.join(", "), b.join(", "))
+        }
+        _ => (own.to_owned(), others.to_owned()),
     }
 }
 

@@ -158,7 +158,7 @@ fn sweep(bench: &Workbench, steps: &Steps) -> Result<Sweep> {
     let summary = match all {
         true => {
             let most = count(f64::from(steps.numbers.last().copied().unwrap_or(0)));
-            format!("{}; noise stays small up to {most} lamps of equal power.", capital(&wrong))
+            format!("Up to {most} lamps of equal power a sample varies by little more than its mean; {wrong}.")
         }
         false => up_to(&verdicts, BOTH, |end| {
             format!("{}; beyond {end} lamps of equal power noise is large.", capital(&wrong))
@@ -242,8 +242,8 @@ fn findings(steps: &Steps, wrong: &str, [lights, objects, bounces, memory, noise
         how: format!(
             "Chosen by its power, a lamp's distance does not count: of {most} lamps a point on the floor is lit by a few, which are hardly ever chosen. \
              Trees make the time grow with the \
-             logarithm of the number, and then with what no longer fits the caches. Memory grows in proportion. Long paths multiply as many \
-             rounded numbers as they have bounces and add as many to a sum (at most {} off).",
+             logarithm of the number, and then with what no longer fits the caches. Memory grows in proportion. Paths of more than 32768 bounces are lost \
+             ([albedo](#albedo)), which is all of the light at last ({} off); shorter ones multiply as many rounded numbers as they have bounces.",
             share(drift.series.iter().map(largest).fold(0.0, f64::max)),
         ),
         mends: "A tree over the lamps chooses by what may arrive of each at this place, which costs more with the logarithm of their number. A direction \
@@ -251,10 +251,10 @@ fn findings(steps: &Steps, wrong: &str, [lights, objects, bounces, memory, noise
                 by name and size before the render."
             .into(),
         sees: format!(
-            "To look alike, {most} lamps need {:.0} times the samples of {few}, with `--light-choice power` {:.0} times. \
+            "To look alike, {most} lamps need {:.0} times the samples of {few}; with `--light-choice power` {:.0} times as many again. \
              Time and memory grow gently; by the verdicts {wrong}.",
             (last(both) / first(both)).powi(2),
-            (last(power) / first(power)).powi(2),
+            (last(power) / last(both)).powi(2),
         ),
     }
 }
