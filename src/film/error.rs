@@ -12,8 +12,9 @@ use super::error_estimate::ErrorEstimate;
 use super::pixel_error::{PixelError, relative_squares};
 use std::collections::BTreeMap;
 
-/// The truth of 95 % of all values is within so many standard errors: Student's t for 60 degrees of freedom, about 7 of each of 9 pixels.
-pub const INTERVAL_95: f64 = 2.0;
+/// The truth of 95 % of all values is within so many standard errors: the normal distribution's. Student's t for the 63 contrasts of 9 pixels would be 2.0, but averaged over
+/// pixels that differ, the errors are a little large for most of them.
+pub const INTERVAL_95: f64 = 1.96;
 
 /// What a promise about the error allows at most for chance, where few pixels hold the error.
 const MOST_CARE: f64 = 1.25;
