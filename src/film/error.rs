@@ -271,6 +271,19 @@ mod tests {
         assert!((total.relative() / before.relative() - 1.0).abs() < 0.01);
     }
 
+    /// Beside a lamp the neighbours' mean is the lamp's: a bright sample in a dark pixel there is a firefly by what most neighbours show.
+    #[test]
+    fn a_firefly_beside_a_lamp_is_told_apart() {
+        let mut film = film(64, 0.1, |x, y| if y == 20 && (21..23).contains(&x) { 70.0 } else { 1.0 });
+        assert_eq!(film.error().unwrap().fireflies, 0);
+        // Two of its eight neighbours are the lamp.
+        let at = 21 * SIZE as usize + 21;
+        film.sums[at][2] = film.sums[at][2].map(|sum| sum + 64.0 * 9.0);
+        let errors = film.error_map().unwrap();
+        assert!(errors.firefly[at]);
+        assert_eq!(errors.total.unwrap().fireflies, 1);
+    }
+
     /// The same film in another unit of light: the same errors, the same fireflies. Powers of two change no digit.
     #[test]
     fn the_unit_of_light_does_not_show() {
