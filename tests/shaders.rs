@@ -345,6 +345,8 @@ fn twins() -> Vec<(&'static str, f64)> {
         ("CHOOSE_BY_TREE", Function::ChooseByTree as u32),
         ("TREE_PROBABILITY", Function::TreeProbability as u32),
         ("SPHERICAL_TRIANGLE", Function::SphericalTriangle as u32),
+        ("SAMPLE_SUN", Function::SampleSun as u32),
+        ("INTENSITY", Function::Intensity as u32),
         ("SAMPLE_ENVIRONMENT", Function::SampleEnvironment as u32),
         ("ENVIRONMENT_AT", Function::EnvironmentAt as u32),
         ("TEXTURE_AT", Function::TextureAt as u32),

@@ -21,7 +21,7 @@ use crate::{Error, Result};
 use advice::{in_plain_words, wrong_brackets};
 pub(super) use cameras::camera_file;
 use file::{File, read_text};
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use std::path::Path;
 use tables::{GroundTable, SceneFile};
 
