@@ -10,8 +10,9 @@ use super::prepared_scene::Reference;
 use super::profile::photometric_intensity;
 use super::surfel::mean;
 use crate::sampling::{random4, ray_salt, uniform};
-use crate::scene::luminaire::one_minus_cos;
-use crate::scene::{Estimator, Integrator, LightSampling, Luminaire, Material, SampledLuminaire, Scene};
+use crate::scene::{
+    Estimator, Integrator, LightSampling, Luminaire, Material, SampledLuminaire, Scene, one_minus_cos,
+};
 use glam::{DMat3, DVec3};
 use std::f64::consts::TAU;
 

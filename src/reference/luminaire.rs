@@ -9,8 +9,7 @@ use super::surfel::{Surfel, offset_ray_origin, position_error};
 use super::warp::{solid_angle, spherical_triangle, uniform_triangle};
 use crate::film::Rays;
 use crate::sampling::uniform;
-use crate::scene::luminaire::spot_edge;
-use crate::scene::{AreaSampling, EmissiveTriangle, LightSampling, Luminaire, SampledLuminaire};
+use crate::scene::{AreaSampling, EmissiveTriangle, LightSampling, Luminaire, SampledLuminaire, spot_edge};
 use glam::{DVec3, Vec3};
 
 /// Where a shadow ray to a point on a surface ends, short of the point: a relative distance far above the error of `t`.

@@ -1,7 +1,6 @@
 //! Photometric profiles: the intensity of a lamp in a direction.
 
-use crate::scene::Profile;
-use crate::scene::luminaire::photometric_frame;
+use crate::scene::{Profile, photometric_frame};
 use glam::{DVec3, Vec3};
 
 /// Which two of some rising angles a number lies between, as the index of the lower, and how far it is from there to the upper: 0 to 1, also beyond the ends.

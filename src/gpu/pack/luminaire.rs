@@ -6,8 +6,9 @@ use crate::scene::rounding::across;
 pub use crate::scene::rounding::{
     MOST_NARROW, PLANE_ROUNDINGS, POINT_ROUNDINGS, TO_OBJECT_ROUNDINGS, TO_WORLD_ROUNDINGS, UNIT_ROUNDOFF,
 };
-use crate::scene::luminaire::{photometric_frame, spot_edge};
-use crate::scene::{EmissiveTriangle, Luminaire, LuminaireTable, Profile, SampledLuminaire, Scene};
+use crate::scene::{
+    EmissiveTriangle, Luminaire, LuminaireTable, Profile, SampledLuminaire, Scene, photometric_frame, spot_edge,
+};
 use bytemuck::Zeroable;
 use std::sync::Arc;
 

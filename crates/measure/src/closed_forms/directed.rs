@@ -1,7 +1,7 @@
 //! Direct light that has a shape in direction: spots, discs at infinity, photometric profiles.
 
 use super::case::{BOUND, Case, View};
-use super::luminaires::{ALBEDO, look_along, plane, point};
+use super::luminaires::{ALBEDO, look_along, plane};
 use glam::{Affine3A, DVec3, Vec3};
 use luminaire::scene::build::{add, matte, quad};
 use luminaire::scene::{Luminaire, Profile};
@@ -60,7 +60,7 @@ pub(super) fn cases() -> Vec<Case> {
     }
     // Aside by the tangent of the angle.
     for (degrees, inner, outer, bound) in
-        [(10.0f64, 20.0f32, 40.0f32, BOUND), (30.0, 20.0, 40.0, 2e-5), (45.0, 20.0, 40.0, BOUND), (60.0, 0.0, 90.0, 2e-6)]
+        [(10.0f64, 20.0f32, 40.0f32, BOUND), (30.0, 20.0, 40.0, 2e-5), (38.0, 20.0, 40.0, 2e-5), (60.0, 0.0, 90.0, 2e-6)]
     {
         let angle = degrees.to_radians();
         let place = Vec3::new((3.0 * angle.tan()) as f32, 3.0, 0.0);
@@ -78,7 +78,7 @@ pub(super) fn cases() -> Vec<Case> {
     certain("profile that is a cosine, 45 degrees from its axis".into(), "I cos^2 / d^2", 2.0 * 0.5 / 18.0, lambert, 2e-6);
     // Candelas that rise by 1 a degree; a plane's point at 30 degrees, in five directions around.
     let rows = [90.0f32, 0.0, 30.0, 60.0, 90.0].iter().flat_map(|most| [0.0, *most]).collect::<Vec<f32>>();
-    for (around, most) in [(0.0f64, 90.0), (45.0, 45.0), (90.0, 0.0), (135.0, 15.0), (240.0, 50.0), (315.0, 75.0)] {
+    for (around, most) in [(0.0f64, 90.0), (45.0, 45.0), (80.0, 10.0), (135.0, 15.0), (240.0, 50.0), (315.0, 75.0)] {
         let angle = 30f64.to_radians();
         // Counter-clockwise from above: from +x to -z. The lamp is on the other side of what it lights.
         let (sine, cosine) = around.to_radians().sin_cos();
@@ -121,9 +121,9 @@ pub(super) fn cases() -> Vec<Case> {
         cases.push(Case::estimated(SUBJECT, name, "L (t sin^2 r + sin a asin(sin r sin t))", expected, vec![view]));
     }
     let mut view = lit_by(sun(0.0, 30.0));
-    view.scene.luminaires.extend([sun(10.0, 40.0), sun(60.0, 0.0), point(Vec3::Y, 1.0)]);
-    let expected = 2.0 + 2.0 * 10f64.to_radians().cos() + 1.0 + 1.0;
-    cases.push(Case::estimated(SUBJECT, "two discs that overlap, infinity and a point".into(), "their sum", expected, vec![view]));
+    view.scene.luminaires.extend([sun(10.0, 40.0), sun(60.0, 0.0)]);
+    let expected = 2.0 + 2.0 * 10f64.to_radians().cos() + 1.0;
+    cases.push(Case::estimated(SUBJECT, "two discs that overlap, and infinity".into(), "their sum", expected, vec![view]));
     // Seen: by a mirror, which light sampling does not see, and by the camera.
     let mut view = lit_by(sun(0.0, 60.0));
     view.scene.materials[0].lambert = Vec3::ZERO;
