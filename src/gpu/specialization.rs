@@ -110,9 +110,9 @@ impl KernelModel {
             vertex_normals: scene.meshes.iter().any(|m| !m.normals.is_empty()),
             instances: scene.objects.len() > 1
                 || scene.objects.iter().any(|o| o.object_to_world != Affine3A::IDENTITY || o.material.is_some()),
-            point_luminaires: any(|l| {
-                matches!(l, SampledLuminaire::Impulse(luminaire) if !matches!(luminaire, Luminaire::Infinite { .. }))
-            }),
+            point_luminaires: any(
+                |l| matches!(l, SampledLuminaire::Impulse(luminaire) if !matches!(luminaire, Luminaire::Infinite { .. })),
+            ),
             infinite_luminaires: any(|l| matches!(l, SampledLuminaire::Impulse(Luminaire::Infinite { .. }))),
             area_luminaires: any(|l| matches!(l, SampledLuminaire::Area(_))),
             environment: scene.environment.as_ref().is_some_and(Environment::emits),

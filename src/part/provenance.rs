@@ -2,7 +2,8 @@
 
 use crate::picture::{Crop, Development, Tone};
 use crate::scene::{
-    Environment, EnvironmentImage, FilmSettings, Luminaire, Mesh, Object, Profile, RenderSettings, Scene, Texture, Triangle,
+    Environment, EnvironmentImage, FilmSettings, Luminaire, Mesh, Object, Profile, RenderSettings, Scene, Texture,
+    Triangle,
 };
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};

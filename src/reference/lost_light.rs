@@ -10,9 +10,7 @@ use super::prepared_scene::Reference;
 use super::profile::photometric_intensity;
 use super::surfel::mean;
 use crate::sampling::{random4, ray_salt, uniform};
-use crate::scene::{
-    Estimator, Integrator, LightSampling, Luminaire, Material, SampledLuminaire, Scene, one_minus_cos,
-};
+use crate::scene::{Estimator, Integrator, LightSampling, Luminaire, Material, SampledLuminaire, Scene, one_minus_cos};
 use glam::{DMat3, DVec3};
 use std::f64::consts::TAU;
 
@@ -199,7 +197,7 @@ impl Reference {
             format!("[[luminaire]] {}", own.map_or(at + 1, |(number, _)| number))
         };
         let advice = match luminaire {
-            Luminaire::Infinite { .. } | Luminaire::Sun { .. } => "an `angle`, the diameter of a sun, which paths find,",
+            Luminaire::Infinite { .. } | Luminaire::Sun { .. } => "a sun with an `angle`, which paths find,",
             _ => "an area luminaire (a small mesh that emits)",
         };
         let share = percent(share);

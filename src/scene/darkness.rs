@@ -20,7 +20,7 @@ impl Scene {
                     && !self.luminaires.iter().any(|luminaire| luminaire.is_disc() && luminaire.emits()) =>
             {
                 Some(format!(
-                "{path}: no path ever meets a luminaire without an area, and there is nothing else that emits: with light \
+                    "{path}: no path ever meets a luminaire without an area, and there is nothing else that emits: with light \
                  sampling off (`none`) the picture will be black"
                 ))
             }

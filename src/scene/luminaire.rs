@@ -68,7 +68,9 @@ impl Luminaire {
     pub fn emits(&self) -> bool {
         match self {
             Luminaire::Point { intensity, .. } | Luminaire::Spot { intensity, .. } => intensity.element_sum() > 0.0,
-            Luminaire::Infinite { irradiance, .. } | Luminaire::Sun { irradiance, .. } => irradiance.element_sum() > 0.0,
+            Luminaire::Infinite { irradiance, .. } | Luminaire::Sun { irradiance, .. } => {
+                irradiance.element_sum() > 0.0
+            }
             Luminaire::Photometric { intensity, profile, .. } => intensity.element_sum() > 0.0 && profile.flux() > 0.0,
         }
     }

@@ -28,7 +28,9 @@ impl Profile {
         match rows[..] {
             [even] => TAU * even,
             _ => (1..rows.len())
-                .map(|i| f64::from(self.horizontal[i] - self.horizontal[i - 1]).to_radians() * 0.5 * (rows[i] + rows[i - 1]))
+                .map(|i| {
+                    f64::from(self.horizontal[i] - self.horizontal[i - 1]).to_radians() * 0.5 * (rows[i] + rows[i - 1])
+                })
                 .sum(),
         }
     }

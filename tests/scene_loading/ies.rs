@@ -133,7 +133,17 @@ fn symmetries() {
     let even = vec![(0.0, 5.0)];
     assert_eq!(of("0", "1 5"), (even.clone(), 0));
     assert_eq!(of("45", "1 5"), (even, 0));
-    let quadrant = vec![(0.0, 5.0), (45.0, 6.0), (90.0, 7.0), (135.0, 6.0), (180.0, 5.0), (225.0, 6.0), (270.0, 7.0), (315.0, 6.0), (360.0, 5.0)];
+    let quadrant = vec![
+        (0.0, 5.0),
+        (45.0, 6.0),
+        (90.0, 7.0),
+        (135.0, 6.0),
+        (180.0, 5.0),
+        (225.0, 6.0),
+        (270.0, 7.0),
+        (315.0, 6.0),
+        (360.0, 5.0),
+    ];
     assert_eq!(of("0 45 90", "1 5 1 6 1 7"), (quadrant, 0));
     let half = vec![(0.0, 5.0), (45.0, 6.0), (180.0, 7.0), (315.0, 6.0), (360.0, 5.0)];
     assert_eq!(of("0 45 180", "1 5 1 6 1 7"), (half, 0));
@@ -200,8 +210,11 @@ fn profiles_are_files() {
     };
     let twice = luminaire("lamp.ies", "") + &luminaire("./lamp.ies", "direction = [1, 0, 0]\nintensity = [1, 2, 3]\n");
     let loaded = scene(&twice).with("lamp.ies", plain("1 2 3")).load("scene.toml");
-    let [_, Luminaire::Photometric { profile: a, up, .. }, Luminaire::Photometric { profile: b, direction, intensity, .. }] =
-        &loaded.luminaires[..]
+    let [
+        _,
+        Luminaire::Photometric { profile: a, up, .. },
+        Luminaire::Photometric { profile: b, direction, intensity, .. },
+    ] = &loaded.luminaires[..]
     else {
         panic!("{:?}", loaded.luminaires)
     };

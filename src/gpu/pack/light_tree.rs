@@ -1,8 +1,8 @@
 //! The light tree, as the kernel has it.
 
 use crate::gpu::layout::{self, LIGHT_TREE_HEADER};
-use crate::scene::{LightTree, LuminaireTable};
 use crate::scene::light_tree::LightNode;
+use crate::scene::{LightTree, LuminaireTable};
 
 /// Texels of the tree: a header, what is chosen beside it, nodes, paths.
 pub(in crate::gpu) fn light_tree(tree: &LightTree, table: &LuminaireTable) -> Vec<[u32; 4]> {

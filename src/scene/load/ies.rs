@@ -34,9 +34,15 @@ pub(super) fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Profile> {
             for _ in 0..2 * pairs {
                 numbers.next("an angle or a factor of TILT=INCLUDE")?;
             }
-            warn(line, "TILT=INCLUDE: its factors are left out: the lamp shines as in the position in which it was measured".into());
+            warn(
+                line,
+                "TILT=INCLUDE: its factors are left out: the lamp shines as in the position in which it was measured"
+                    .into(),
+            );
         }
-        "" => return Err(error(line, "expected `TILT=NONE`, `TILT=INCLUDE` or the name of a file behind `TILT=`".into())),
+        "" => {
+            return Err(error(line, "expected `TILT=NONE`, `TILT=INCLUDE` or the name of a file behind `TILT=`".into()));
+        }
         _ => {
             let message = format!(
                 "`TILT={}` names a file, which is left out: the lamp shines as in the position in which it was measured",
@@ -62,7 +68,10 @@ pub(super) fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Profile> {
         1986 | 1991 => return Err(numbers.error("expected a ballast-lamp factor above 0".into())),
         2019 => 1.0,
         _ if further != 1.0 => {
-            warn(numbers.line, format!("{further} behind the ballast factor, where LM-63 of 1995 and later wants 1, is left out"));
+            warn(
+                numbers.line,
+                format!("{further} behind the ballast factor, where LM-63 of 1995 and later wants 1, is left out"),
+            );
             1.0
         }
         _ => 1.0,
@@ -93,11 +102,15 @@ pub(super) fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Profile> {
     }
     let ends = [vertical[0], vertical[vertical.len() - 1]];
     if ![[0.0, 90.0], [90.0, 180.0], [0.0, 180.0]].contains(&ends) {
-        let message = format!("the vertical angles go from {} to {} degrees; beyond there is no light", ends[0], ends[1]);
+        let message =
+            format!("the vertical angles go from {} to {} degrees; beyond there is no light", ends[0], ends[1]);
         warn(line, message);
     }
     if matches!(around, Around::Unclosed) {
-        warn(line, format!("the horizontal angles end at {} degrees; the first ones follow", horizontal[horizontal.len() - 1]));
+        warn(
+            line,
+            format!("the horizontal angles end at {} degrees; the first ones follow", horizontal[horizontal.len() - 1]),
+        );
     }
     if rows.iter().flatten().all(|candela| *candela == 0.0) {
         warn(line, "all candelas are 0: the lamp is dark".into());
@@ -120,7 +133,9 @@ fn revision(first: &str) -> u32 {
     match first.as_str() {
         line if line.starts_with("IESNA91") => 1991,
         line if !line.starts_with("IES") => 1986,
-        line => [1986, 1991, 1995, 2002, 2019].into_iter().find(|year| line.contains(&year.to_string())).unwrap_or(2002),
+        line => {
+            [1986, 1991, 1995, 2002, 2019].into_iter().find(|year| line.contains(&year.to_string())).unwrap_or(2002)
+        }
     }
 }
 
@@ -240,7 +255,11 @@ impl<'a> Numbers<'a> {
     fn count(&mut self, what: &str, least: u32) -> Result<u32> {
         let number = self.next(what)?;
         let whole = number.fract() == 0.0 && (f64::from(least)..=f64::from(u32::MAX / 4)).contains(&number);
-        if whole { Ok(number as u32) } else { Err(self.error(format!("expected {what}, at least {least}, found {number}"))) }
+        if whole {
+            Ok(number as u32)
+        } else {
+            Err(self.error(format!("expected {what}, at least {least}, found {number}")))
+        }
     }
 
     /// Type C.
@@ -264,7 +283,9 @@ impl<'a> Numbers<'a> {
                 return Err(self.error(format!("expected a {which} angle from 0 to {most} degrees, found {angle}")));
             }
             if let Some(last) = angles.last().filter(|last| angle as f32 <= **last) {
-                return Err(self.error(format!("expected a {which} angle above {last}, found {angle}: they have to rise")));
+                return Err(
+                    self.error(format!("expected a {which} angle above {last}, found {angle}: they have to rise"))
+                );
             }
             angles.push(angle as f32);
         }

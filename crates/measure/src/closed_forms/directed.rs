@@ -5,7 +5,7 @@ use super::luminaires::{ALBEDO, look_along, plane};
 use glam::{Affine3A, DVec3, Vec3};
 use luminaire::scene::build::{add, matte, quad};
 use luminaire::scene::{Luminaire, Profile};
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::PI;
 
 const SUBJECT: &str = "direct light by its direction";
 
@@ -59,9 +59,12 @@ pub(super) fn cases() -> Vec<Case> {
         certain(name, "I / d^2", 2.0 / 9.0, spot(Vec3::Y * 3.0, inner, outer), BOUND);
     }
     // Aside by the tangent of the angle.
-    for (degrees, inner, outer, bound) in
-        [(10.0f64, 20.0f32, 40.0f32, BOUND), (30.0, 20.0, 40.0, 2e-5), (38.0, 20.0, 40.0, 2e-5), (60.0, 0.0, 90.0, 2e-6)]
-    {
+    for (degrees, inner, outer, bound) in [
+        (10.0f64, 20.0f32, 40.0f32, BOUND),
+        (30.0, 20.0, 40.0, 2e-5),
+        (38.0, 20.0, 40.0, 2e-5),
+        (60.0, 0.0, 90.0, 2e-6),
+    ] {
         let angle = degrees.to_radians();
         let place = Vec3::new((3.0 * angle.tan()) as f32, 3.0, 0.0);
         let [from, to] = [inner, outer].map(|edge| f64::from(edge).to_radians().cos());
@@ -71,11 +74,24 @@ pub(super) fn cases() -> Vec<Case> {
         certain(name, formula, 2.0 * falloff * angle.cos().powi(3) / 9.0, spot(place, inner, outer), bound);
     }
     let even = photometric(Vec3::new(1.0, 3.0, 0.0), vec![0.0, 180.0], vec![2.0; 2]);
-    certain("profile that is the same everywhere".into(), "as a point: I cos / d^2", 6.0 / 10f64.powf(1.5), even, BOUND);
+    certain(
+        "profile that is the same everywhere".into(),
+        "as a point: I cos / d^2",
+        6.0 / 10f64.powf(1.5),
+        even,
+        BOUND,
+    );
     let degrees: Vec<f32> = (0..=18).map(|i| 5.0 * i as f32).collect();
-    let cosines: Vec<f32> = degrees.iter().map(|degrees| (2.0 * f64::from(*degrees).to_radians().cos()) as f32).collect();
+    let cosines: Vec<f32> =
+        degrees.iter().map(|degrees| (2.0 * f64::from(*degrees).to_radians().cos()) as f32).collect();
     let lambert = photometric(Vec3::new(3.0, 3.0, 0.0), degrees, cosines);
-    certain("profile that is a cosine, 45 degrees from its axis".into(), "I cos^2 / d^2", 2.0 * 0.5 / 18.0, lambert, 2e-6);
+    certain(
+        "profile that is a cosine, 45 degrees from its axis".into(),
+        "I cos^2 / d^2",
+        2.0 * 0.5 / 18.0,
+        lambert,
+        2e-6,
+    );
     // Candelas that rise by 1 a degree; a plane's point at 30 degrees, in five directions around.
     let rows = [90.0f32, 0.0, 30.0, 60.0, 90.0].iter().flat_map(|most| [0.0, *most]).collect::<Vec<f32>>();
     for (around, most) in [(0.0f64, 90.0), (45.0, 45.0), (80.0, 10.0), (135.0, 15.0), (240.0, 50.0), (315.0, 75.0)] {
@@ -96,7 +112,13 @@ pub(super) fn cases() -> Vec<Case> {
         let [from, to] = [inner, outer].map(|edge| 1.0 - f64::from(edge).to_radians().cos());
         let expected = 2.0 * 2.0 * PI * (from + (to - from) / 3.0);
         let name = format!("flux of a spot of {inner} to {outer} degrees");
-        cases.push(Case::estimated(SUBJECT, name, "2 pi I (a + (b - a) / 3), a and b being 1 - cos", expected, vec![view]));
+        cases.push(Case::estimated(
+            SUBJECT,
+            name,
+            "2 pi I (a + (b - a) / 3), a and b being 1 - cos",
+            expected,
+            vec![view],
+        ));
     }
 
     for (zenith, angle) in [(0.0, 1e-4f32), (0.0, 0.53), (60.0, 0.53), (60.0, 50.0), (20.0, 120.0), (0.0, 180.0)] {
@@ -123,7 +145,13 @@ pub(super) fn cases() -> Vec<Case> {
     let mut view = lit_by(sun(0.0, 30.0));
     view.scene.luminaires.extend([sun(10.0, 40.0), sun(60.0, 0.0)]);
     let expected = 2.0 + 2.0 * 10f64.to_radians().cos() + 1.0;
-    cases.push(Case::estimated(SUBJECT, "two discs that overlap, and infinity".into(), "their sum", expected, vec![view]));
+    cases.push(Case::estimated(
+        SUBJECT,
+        "two discs that overlap, and infinity".into(),
+        "their sum",
+        expected,
+        vec![view],
+    ));
     // Seen: by a mirror, which light sampling does not see, and by the camera.
     let mut view = lit_by(sun(0.0, 60.0));
     view.scene.materials[0].lambert = Vec3::ZERO;
@@ -140,6 +168,7 @@ pub(super) fn cases() -> Vec<Case> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::FRAC_PI_2;
 
     /// Against the integral of the cosine over the part of the disc.
     #[test]

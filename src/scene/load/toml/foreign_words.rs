@@ -376,11 +376,7 @@ pub(super) const KEYS: &[Words] = &[
         "a point has `intensity` (power / (4 pi), three numbers), light at infinity `irradiance`",
     ),
     ("luminaire", &["location", "origin", "from", "translate", "pos"], "where a point is says `position`"),
-    (
-        "luminaire",
-        &["to", "target", "rotation", "look_at"],
-        "the direction in which the light travels is `direction`",
-    ),
+    ("luminaire", &["to", "target", "rotation", "look_at"], "the direction in which the light travels is `direction`"),
     (
         "luminaire",
         &[
@@ -400,7 +396,11 @@ pub(super) const KEYS: &[Words] = &[
         ],
         "a spot has `outer_angle` and `inner_angle`, in degrees from its axis",
     ),
-    ("luminaire", &["ies", "ies_file", "file", "filename", "photometry"], "an IES file is named by `profile`, on a \"point\""),
+    (
+        "luminaire",
+        &["ies", "ies_file", "file", "filename", "photometry"],
+        "an IES file is named by `profile`, on a \"point\"",
+    ),
     (
         "luminaire",
         &["angular_diameter", "diameter", "angular_size", "sun_size"],

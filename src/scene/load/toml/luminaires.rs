@@ -15,18 +15,28 @@ use glam::{DVec3, Vec3};
 const POINT: &str = "a point luminaire has `position` and `intensity`, both and nothing else; or `position` and `profile`, the name of an IES file, with which there may be \
                      `intensity`, `direction` and `up`";
 const SPOT: &str = "a spot has `position`, `direction`, `intensity` and `outer_angle`, all of them, perhaps `inner_angle`, and nothing else";
-const INFINITE: &str = "an infinite luminaire has `direction` and `irradiance`, both, perhaps `angle`, and nothing else";
+const INFINITE: &str =
+    "an infinite luminaire has `direction` and `irradiance`, both, perhaps `angle`, and nothing else";
 /// Directions whose squared sine is less are along each other.
 const ALONG: f64 = 1e-6;
 
 impl File<'_> {
     /// What is wrong with a `[[luminaire]]` by itself, whatever is in other files.
     pub(super) fn check_luminaire(&self, table: &Spanned<LuminaireEntry>) -> Result<()> {
-        if table.get_ref().profile.is_some() { self.photometric(table).map(drop) } else { self.plain(table, DVec3::ZERO).map(drop) }
+        if table.get_ref().profile.is_some() {
+            self.photometric(table).map(drop)
+        } else {
+            self.plain(table, DVec3::ZERO).map(drop)
+        }
     }
 
     /// A `[[luminaire]]`, in a scene with this origin.
-    pub(super) fn luminaire(&self, table: &Spanned<LuminaireEntry>, origin: DVec3, loader: &mut Loader) -> Result<Luminaire> {
+    pub(super) fn luminaire(
+        &self,
+        table: &Spanned<LuminaireEntry>,
+        origin: DVec3,
+        loader: &mut Loader,
+    ) -> Result<Luminaire> {
         let (line, _) = line_and_column(self.text, table.span().start);
         let Some(name) = &table.get_ref().profile else {
             let luminaire = self.plain(table, origin)?;
@@ -57,8 +67,18 @@ impl File<'_> {
 
     /// One without a profile.
     fn plain(&self, table: &Spanned<LuminaireEntry>, origin: DVec3) -> Result<Luminaire> {
-        let LuminaireEntry { kind, position, intensity, profile: _, direction, up, inner_angle, outer_angle, irradiance, angle } =
-            table.get_ref();
+        let LuminaireEntry {
+            kind,
+            position,
+            intensity,
+            profile: _,
+            direction,
+            up,
+            inner_angle,
+            outer_angle,
+            irradiance,
+            angle,
+        } = table.get_ref();
         let of_a_spot = (inner_angle, outer_angle);
         match (kind, position, intensity, direction, irradiance) {
             (LuminaireKind::Point, Some(position), Some(intensity), None, None)
@@ -73,10 +93,15 @@ impl File<'_> {
                 let outer = outer_angle.map_or(0.0, |angle| angle.0);
                 let inner = inner_angle.as_ref().map_or(0.0, |angle| angle.get_ref().0);
                 if outer < LEAST_ANGLE {
-                    return Err(self.error(table.span(), format!("expected an `outer_angle` from {LEAST_ANGLE} to 90 degrees, found {outer}")));
+                    return Err(self.error(
+                        table.span(),
+                        format!("expected an `outer_angle` from {LEAST_ANGLE} to 90 degrees, found {outer}"),
+                    ));
                 }
                 if let Some(angle) = inner_angle.as_ref().filter(|_| inner > outer) {
-                    let message = format!("expected an `inner_angle` of at most the `outer_angle`, {outer} degrees, found {inner}");
+                    let message = format!(
+                        "expected an `inner_angle` of at most the `outer_angle`, {outer} degrees, found {inner}"
+                    );
                     return Err(self.error(angle.span(), message));
                 }
                 let position = (position.0 - origin).as_vec3();
@@ -90,7 +115,8 @@ impl File<'_> {
                     return Ok(Luminaire::Infinite { direction, irradiance });
                 };
                 if !SunDisc::new(direction, irradiance, angle).radiance.as_vec3().is_finite() {
-                    let message = "so small a disc of so much irradiance has a radiance above 3e38: give it a larger `angle`";
+                    let message =
+                        "so small a disc of so much irradiance has a radiance above 3e38: give it a larger `angle`";
                     return Err(self.error(table.span(), message));
                 }
                 Ok(Luminaire::Sun { direction, irradiance, angle })
@@ -103,11 +129,28 @@ impl File<'_> {
 
     /// Where one with a profile is, where it looks, what is up, and its factor.
     fn photometric(&self, table: &Spanned<LuminaireEntry>) -> Result<(DVec3, Vec3, Option<Vec3>, Vec3)> {
-        let LuminaireEntry { kind, position, intensity, profile: _, direction, up, inner_angle, outer_angle, irradiance, angle } =
-            table.get_ref();
+        let LuminaireEntry {
+            kind,
+            position,
+            intensity,
+            profile: _,
+            direction,
+            up,
+            inner_angle,
+            outer_angle,
+            irradiance,
+            angle,
+        } = table.get_ref();
         let nothing_else = matches!((inner_angle, outer_angle, irradiance, angle), (None, None, None, None));
         let (LuminaireKind::Point, Some(position), true) = (kind, position, nothing_else) else {
-            return Err(self.error(table.span(), if matches!(kind, LuminaireKind::Point) { POINT.to_owned() } else { format!("a `profile` is for a luminaire of the kind \"point\": {POINT}") }));
+            return Err(self.error(
+                table.span(),
+                if matches!(kind, LuminaireKind::Point) {
+                    POINT.to_owned()
+                } else {
+                    format!("a `profile` is for a luminaire of the kind \"point\": {POINT}")
+                },
+            ));
         };
         let direction = direction.as_ref().map_or(Ok(Vec3::NEG_Y), |direction| self.direction(table, direction))?;
         let up = match up {

@@ -18,7 +18,10 @@ pub(super) fn field_of_view(fov: f32) -> Option<String> {
 pub(super) fn cone(outer: f32) -> Option<String> {
     let usual = (0.2..=FRAC_PI_2 + 0.01).contains(&outer);
     usual.then(|| {
-        format!("outer_angle = {outer} is in degrees, a narrow beam; if radians are meant, write {:.1}", outer.to_degrees())
+        format!(
+            "outer_angle = {outer} is in degrees, a narrow beam; if radians are meant, write {:.1}",
+            outer.to_degrees()
+        )
     })
 }
 

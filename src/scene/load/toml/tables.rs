@@ -1,8 +1,8 @@
 //! The tables of a scene file, as `scenes/README.md` describes them.
 
 use super::values::{
-    Albedo, Angle, Blades, Bounces, Colour, ConeAngle, DiscAngle, Eta, Exact, Exponent, Exposure, FilterRadius, Finite, Fov, MapOffset,
-    MapScale, Matrix, NotNegative, Pixels, Positive, Probability, Samples, Shift, Triple, Unit,
+    Albedo, Angle, Blades, Bounces, Colour, ConeAngle, DiscAngle, Eta, Exact, Exponent, Exposure, FilterRadius, Finite,
+    Fov, MapOffset, MapScale, Matrix, NotNegative, Pixels, Positive, Probability, Samples, Shift, Triple, Unit,
 };
 use crate::scene::{AreaSampling, Directions, Extinction, Filter, LightChoice, LightSampling, Sampler, Tone};
 use ::toml::Spanned;
