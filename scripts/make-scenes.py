@@ -717,7 +717,7 @@ def plates(out):
 
 def spotlights(out):
     stage = Obj("A pavilion open to the front, with a plinth, and a fence beside it in the sun.")
-    stage.part("floor", "floor", quad((-9, 0, 9), (9, 0, 9), (9, 0, -2), (-9, 0, -2)))
+    stage.part("floor", "floor", quad((-5.6, 0, 4), (5.6, 0, 4), (5.6, 0, -2.2), (-5.6, 0, -2.2)))
     stage.part("wall", "wall", box((-3.6, 0, -2.2), (3.6, 3.1, -2)))
     stage.part("roof", "wall", box((-3.8, 3.1, -2.3), (3.8, 3.25, -0.9)))
     stage.part("plinth", "plinth", box((1.5, 0, -1.55), (2.3, 0.7, -0.95)))
