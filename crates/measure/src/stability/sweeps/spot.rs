@@ -119,7 +119,7 @@ pub fn sweep(bench: &Workbench, degrees: &[f64], samples: u32) -> Result<Sweep> 
     let of_spots = light(SPOT, &[], &spots.iter().collect::<Vec<_>>(), Worse::Downwards);
     let verdicts = vec![sun(0), of_spots, sun(1), sun(2)];
     let summary = up_to(&verdicts, SPOT, |angle| {
-        format!("Suns of every size are safe; the edges of spots are sharp down to {angle} degrees.")
+        format!("Suns of every size are safe; the edges of spots are right down to {angle} degrees.")
     });
     let findings = findings(&Found { shares: &shares, fireflies: &fireflies, gpu: &gpu, spots: &spots, tally: &tally });
     shares.iter_mut().for_each(|series| series.name += ", cpu");
