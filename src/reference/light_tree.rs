@@ -174,6 +174,13 @@ impl Reference {
         }
     }
 
+    /// The probability of choosing a disc at infinity, which has this index in the luminaire table.
+    pub(super) fn sun_probability(&self, entry: usize) -> f64 {
+        let Some(tree) = self.light_tree() else { return self.luminaires.ideal_probability(entry) };
+        let outer = tree.outer.iter().position(|outer| *outer == Some(entry as u32));
+        outer.map_or(0.0, |outer| tree.outer_choice.pdf[outer])
+    }
+
     /// The probability with which [`Reference::choose_luminaire`] gives an emissive triangle, by the tree, seen from a surface.
     pub fn tree_probability(&self, tree: &LightTree, from: &Surfel, object: u32, triangle: u32) -> f64 {
         let Some(mut path) = tree.path(&self.scene, object, triangle) else { return 0.0 };

@@ -204,7 +204,7 @@ impl Reference {
         let mut radiance = DVec3::ZERO;
         for (entry, sun) in self.luminaires.suns() {
             if one_minus_cosine(direction, sun.towards.as_dvec3()) <= sun.extent {
-                let light_pdf = self.outer_probability(entry) * sun.density();
+                let light_pdf = self.sun_probability(entry) * sun.density();
                 radiance += emission_weight(light_sampling, pdf, light_pdf) * sun.radiance;
             }
         }

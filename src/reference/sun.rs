@@ -1,6 +1,5 @@
 //! Discs at infinity: where they are, and directions to them.
 
-use super::prepared_scene::Reference;
 use super::warp::{concentric_disk, frame};
 use crate::scene::SunDisc;
 use glam::DVec3;
@@ -18,13 +17,4 @@ pub fn sample_sun(sun: &SunDisc, u: f64, v: f64) -> DVec3 {
     let towards = sun.towards.as_dvec3();
     let (tangent, bitangent) = frame(towards);
     across.x * tangent + across.y * bitangent + (1.0 - below) * towards
-}
-
-impl Reference {
-    /// The probability of choosing an entry of the luminaire table that is infinitely far away.
-    pub(super) fn outer_probability(&self, entry: usize) -> f64 {
-        let Some(tree) = self.light_tree() else { return self.luminaires.ideal_probability(entry) };
-        let outer = tree.outer.iter().position(|outer| *outer == Some(entry as u32));
-        outer.map_or(0.0, |outer| tree.outer_choice.pdf[outer])
-    }
 }

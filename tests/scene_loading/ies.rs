@@ -222,6 +222,8 @@ fn profiles_are_files() {
     assert_eq!((*up, *direction, *intensity), (Vec3::X, Vec3::X, Vec3::new(1.0, 2.0, 3.0)));
     let error = scene(&luminaire("lampe.ies", "")).with("lamp.ies", plain("1 2 3")).error("scene.toml").to_string();
     assert!(error.contains("scene.toml:14:11") && error.contains("there is lamp.ies"), "{error}");
+    let bright = scene(&luminaire("lamp.ies", "intensity = [1e38, 0, 0]\n")).with("lamp.ies", plain("1 20 3"));
+    bright.fails_at("scene.toml", "scene.toml", (11, 1), &["4.0e1 candelas"]);
     // Before it is looked for, what is wrong in the scene file itself.
     let of = |more: &str| scene(&luminaire("none.ies", more)).error("scene.toml").to_string();
     for (more, words) in [

@@ -41,7 +41,10 @@ pub(super) fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Profile> {
             );
         }
         "" => {
-            return Err(error(line, "expected `TILT=NONE`, `TILT=INCLUDE` or the name of a file behind `TILT=`".into()));
+            return Err(error(
+                line,
+                "expected `TILT=NONE`, `TILT=INCLUDE` or the name of a file behind `TILT=`".into(),
+            ));
         }
         _ => {
             let message = format!(

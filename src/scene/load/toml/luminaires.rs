@@ -53,6 +53,14 @@ impl File<'_> {
             Error::Read { .. } => self.error(name.span(), error.to_string() + &instead_of(&path)),
             other => other,
         })?;
+        if f64::from(intensity.max_element()) * profile.largest() > f64::from(f32::MAX) {
+            let message = format!(
+                "an `intensity` of {} times {:.1e} candelas is above 3e38",
+                intensity.max_element(),
+                profile.largest()
+            );
+            return Err(self.error(table.span(), message));
+        }
         if up.is_none() && profile.horizontal.len() > 1 {
             let guess = if is_vertical(direction) { "+x" } else { "up" };
             loader.warnings.push(format!(
