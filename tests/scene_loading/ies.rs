@@ -171,7 +171,7 @@ fn wrong_files_are_found_with_their_line() {
     lamp_fails(&with("2 3 1 1 2", "2 1 1 1 2"), 5, &["vertical angles", "at least 2"]);
     lamp_fails(&with("2 3 1 1 2", "2 3.5 1 1 2"), 5, &["vertical angles", "3.5"]);
     lamp_fails(&with("2 3 1 1 2", "2 4000000000 1 1 2"), 5, &["vertical angles"]);
-    lamp_fails(&with("2 3 1 1 2", "2 100000000 1 1 2"), 7, &["a vertical angle above 90, found 0"]);
+    lamp_fails(&with("2 3 1 1 2", "2 100000000 1 1 2"), 8, &["a vertical angle above 90, found 0"]);
     lamp_fails(&with("2 3 1 1 2", "2 3 0 1 2"), 5, &["horizontal angles", "at least 1"]);
     lamp_fails(&with("2 3 1 1 2", "2 3 1 2 2"), 5, &["type B", "not read"]);
     lamp_fails(&with("2 3 1 1 2", "2 3 1 3 2"), 5, &["type A", "not read"]);
