@@ -52,7 +52,7 @@ fn everything_is_drawn_by_its_density() {
         tests.push(("triangle by area".into(), triangle_by_area(&probe)));
         tests.push(("choice of a luminaire".into(), choice_of_a_luminaire(&probe, &scene)));
         tests.extend(spherical_triangles(&probe, &scene));
-        tests.extend(discs(&backend));
+        tests.extend(discs(backend));
         print!("{}: ", backend.name());
         assert_plausible(&tests);
     });
