@@ -140,6 +140,12 @@ fn under_suns_every_estimator_has_one_mean() {
     for lamps in [false, true] {
         let mut scene = crate::common::stage::stage(32, 32);
         scene.luminaires.retain(luminaire::scene::Luminaire::is_disc);
+        // So wide that paths find as much of them as light sampling does.
+        for luminaire in &mut scene.luminaires {
+            if let luminaire::scene::Luminaire::Sun { angle, .. } = luminaire {
+                *angle *= 3.0;
+            }
+        }
         if lamps {
             for x in [-1.5, 1.0] {
                 let panel = quad(Vec3::new(x, -0.75, -1.75), Vec3::X * 0.5, Vec3::Y * 0.75);
