@@ -36,7 +36,7 @@ test: ## install what the tests want, then run them all
 	else echo "SKIP: the Vulkan validation layer is not installed; its complaints are not tested"; fi; \
 	echo cargo test --release --workspace; cargo test --release --workspace
 
-fuzz: ## search for input that breaks the program: TARGET=obj, mtl, scene, texture or part, for SECONDS=1200 (wants cargo-fuzz: docs/reliability.md)
+fuzz: ## search for input that breaks the program: TARGET=obj, mtl, scene, ies, texture or part, for SECONDS=1200 (wants cargo-fuzz: docs/reliability.md)
 	@mkdir -p fuzz/corpus/$(or $(TARGET),obj)
 	cd fuzz && RUSTC_BOOTSTRAP=1 cargo fuzz run --sanitizer none $(or $(TARGET),obj) corpus/$(or $(TARGET),obj) seeds/$(or $(TARGET),obj) \
 		-- -timeout=10 -rss_limit_mb=1024 -max_len=4096 -max_total_time=$(or $(SECONDS),1200)

@@ -73,6 +73,25 @@ float emission_weight(float pdf, float density) {
     return power_heuristic(pdf, density);
 }
 
+// What a path that escapes with the density `pdf` finds of the discs at infinity, each with its weight.
+vec3 sunlight(vec3 direction, float pdf) {
+    vec3 radiance = vec3(0.0);
+    for (uint i = 0u; i < frame.sun_count; i++) {
+        Luminaire sun = load_luminaire(frame.first_sun + i);
+        if (one_minus_cosine(direction, sun.a) > sun.area) continue;
+        float density = 0.0;
+        if (LIGHT_SAMPLING == LIGHT_MIS && pdf != IMPULSE) density = sun_probability(i, sun) * sun_density(sun);
+        radiance += sun.radiance * emission_weight(pdf, density);
+    }
+    return radiance;
+}
+
+// The share of a spot's intensity that it sends along `direction`, a unit vector.
+float spot_falloff(Luminaire light, vec3 direction) {
+    float inside = clamp((light.area - one_minus_cosine(direction, light.b)) * light.position_error, 0.0, 1.0);
+    return inside * inside;
+}
+
 // Light from one luminaire that `s` sends towards `wo`; `throughput` is the path's so far, without eta^2, and `rest` the probability that
 // it takes no impulse there. Adds the shadow ray to `rays` (all, shadow).
 vec3 direct_light(Surfel s, Material material, vec3 wo, vec3 throughput, uvec4 random, float rest, uint salt, inout uvec2 rays) {
@@ -88,10 +107,11 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, vec3 throughput, uvec4 r
         light.ideal_probability = probability;
     }
     // With one kind of luminaire in the scene these are constants.
-    bool several = int(POINT_LUMINAIRES) + int(INFINITE_LUMINAIRES) + int(AREA_LUMINAIRES) + int(ENVIRONMENT_SAMPLING) > 1;
+    bool several = int(POINT_LUMINAIRES) + int(INFINITE_LUMINAIRES) + int(AREA_LUMINAIRES) + int(ENVIRONMENT_SAMPLING) + int(SUNS) > 1;
     bool infinite = INFINITE_LUMINAIRES && (!several || light.kind == INFINITE);
     bool area = AREA_LUMINAIRES && (!several || light.kind == AREA);
     bool surroundings = ENVIRONMENT_SAMPLING && (!several || light.kind == SURROUNDINGS);
+    bool sun = SUNS && (!several || light.kind == SUN);
     // Unshadowed radiance over the density of finding it, and the shadow ray that must reach (0, t_max) unhindered.
     vec3 target = light.a;
     vec3 wi = target;
@@ -103,6 +123,11 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, vec3 throughput, uvec4 r
         wi = sample_environment(random.xy, density);
         incident = environment_radiance(wi) / (density * light.probability);
         density *= light.probability;
+    } else if (sun) {
+        wi = sample_sun(light, uniform2(random.xy));
+        density = sun_density(light);
+        incident /= density;
+        density *= light.ideal_probability;
     } else if (!infinite) {
         t_max = 1.0;
         float double_area = 2.0 * light.area;
@@ -130,6 +155,8 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, vec3 throughput, uvec4 r
             if (distance2 == 0.0) return vec3(0.0);
             wi = d * inversesqrt(distance2);
             incident /= distance2;
+            if (SPOTS && light.kind == SPOT) incident *= spot_falloff(light, -wi);
+            if (PROFILES && light.kind == PHOTOMETRIC) incident *= photometric_intensity(light, -wi);
             if (area) {
                 float cosine = light.area * abs(dot(light.normal, wi));
                 incident *= cosine;
@@ -142,7 +169,7 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, vec3 throughput, uvec4 r
     vec3 scattered = f.rgb * dot(s.shading_normal, wi);
     vec3 radiance = scattered * incident;
     if (radiance == vec3(0.0)) return vec3(0.0);
-    if (LIGHT_SAMPLING == LIGHT_MIS && (area || surroundings)) {
+    if (LIGHT_SAMPLING == LIGHT_MIS && (area || surroundings || sun)) {
         radiance *= power_heuristic(density, path_pdf(f.w * rest, throughput * scattered, material));
     }
 
@@ -166,7 +193,7 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, vec3 throughput, uvec4 r
 
     vec3 origin = offset_ray_origin(s.position, s.position_error, s.geometric_normal, wi);
     vec3 direction = wi;
-    if (!infinite && !surroundings) {
+    if (!infinite && !surroundings && !sun) {
         if (area) {
             target = offset_ray_origin(target, vec3(target_error), light.normal, -wi);
             // The end of the segment rounds by its length: stop eight units in the last place before it.

@@ -55,6 +55,7 @@ bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uve
             float weight = emission_weight(path.pdf, density);
             if (weight > 0.0) path.radiance += path.throughput * environment_radiance(path.direction) * weight;
         }
+        if (SUNS) path.radiance += path.throughput * sunlight(path.direction, path.pdf);
         return false;
     }
     vec3 wo = -path.direction;

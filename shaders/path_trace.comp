@@ -18,6 +18,8 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "scatter.glsl"
 #include "environment.glsl"
 #include "light_tree.glsl"
+#include "sun.glsl"
+#include "profile.glsl"
 #include "luminaire.glsl"
 #include "sensor.glsl"
 #include "path.glsl"

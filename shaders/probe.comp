@@ -18,6 +18,8 @@ layout(local_size_x = 64) in;
 #include "scatter.glsl"
 #include "environment.glsl"
 #include "light_tree.glsl"
+#include "sun.glsl"
+#include "profile.glsl"
 #include "luminaire.glsl"
 #include "sensor.glsl"
 
@@ -48,6 +50,8 @@ const uint NUMBERS = 17u;             // in: pixel, sample, block, seed; out: th
 const uint COVERAGE = 18u;            // in: pixel, sample, ray, seed; object, triangle; out: salt, number
 const uint CHOOSE_BY_TREE = 20u;      // in: point, random; normal, further bits; out: index (NONE: none), probability
 const uint TREE_PROBABILITY = 21u;    // in: point, place among the paths; normal; out: probability
+const uint SAMPLE_SUN = 22u;          // in: u, luminaire; out: direction, density
+const uint INTENSITY = 23u;           // in: direction, luminaire (spot or photometric); out: what its intensity is multiplied by
 const uint SIN_COS = 19u;             // in: turns; y, x; out: sin and cos; angle(y, x)
 
 layout(set = 0, binding = 7, std430) writeonly buffer Out { uvec4 results[]; };
@@ -133,6 +137,17 @@ void main() {
         float density;
         vec3 wi = sample_environment(x.xy, density);
         result = floatBitsToUint(vec4(wi, density));
+        break;
+    }
+    case SAMPLE_SUN: {
+        Luminaire sun = load_luminaire(x.z);
+        result = floatBitsToUint(vec4(sample_sun(sun, uintBitsToFloat(x.xy)), sun_density(sun)));
+        break;
+    }
+    case INTENSITY: {
+        Luminaire light = load_luminaire(x.w);
+        vec3 direction = uintBitsToFloat(x.xyz);
+        result.x = floatBitsToUint(light.kind == SPOT ? spot_falloff(light, direction) : photometric_intensity(light, direction));
         break;
     }
     case ENVIRONMENT_AT: {

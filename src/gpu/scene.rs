@@ -148,7 +148,8 @@ impl Lighting {
         let (environment_texels, environment_choice) =
             scene.environment.as_ref().map(|sky| environment(sky, table.environment.as_ref())).unwrap_or_default();
         // Without one, zeros say so to a kernel that could use it.
-        let tree = table.tree.as_ref().map_or_else(|| vec![[0; 4]; layout::LIGHT_TREE_HEADER], light_tree);
+        let tree = table.tree.as_ref();
+        let tree = tree.map_or_else(|| vec![[0; 4]; layout::LIGHT_TREE_HEADER], |tree| light_tree(tree, table));
         Ok(Lighting {
             materials: texel_buffer(device, "materials", &materials)?,
             luminaires: texel_buffer(device, "luminaires", &luminaires(scene, table, places))?,

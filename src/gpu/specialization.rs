@@ -72,6 +72,12 @@ features! {
     environment_sampling: "sampling of the environment",
     /// Luminaires are chosen by a tree over them.
     light_tree: "light tree",
+    /// Some point luminaire shines into a cone.
+    spots: "spots",
+    /// Some point luminaire has measured intensities.
+    profiles: "photometric profiles",
+    /// Some luminaire is a disc at infinity.
+    suns: "sun discs",
 }
 
 /// The kernel that runs: the scene's features, and the choices of its integrator.
@@ -104,7 +110,9 @@ impl KernelModel {
             vertex_normals: scene.meshes.iter().any(|m| !m.normals.is_empty()),
             instances: scene.objects.len() > 1
                 || scene.objects.iter().any(|o| o.object_to_world != Affine3A::IDENTITY || o.material.is_some()),
-            point_luminaires: any(|l| matches!(l, SampledLuminaire::Impulse(Luminaire::Point { .. }))),
+            point_luminaires: any(
+                |l| matches!(l, SampledLuminaire::Impulse(luminaire) if !matches!(luminaire, Luminaire::Infinite { .. })),
+            ),
             infinite_luminaires: any(|l| matches!(l, SampledLuminaire::Impulse(Luminaire::Infinite { .. }))),
             area_luminaires: any(|l| matches!(l, SampledLuminaire::Area(_))),
             environment: scene.environment.as_ref().is_some_and(Environment::emits),
@@ -121,6 +129,9 @@ impl KernelModel {
             environment_image: scene.environment.as_ref().is_some_and(|e| e.emits() && e.image.is_some()),
             environment_sampling: any(|l| matches!(l, SampledLuminaire::Environment)),
             light_tree: table.tree.is_some(),
+            spots: any(|l| matches!(l, SampledLuminaire::Impulse(Luminaire::Spot { .. }))),
+            profiles: any(|l| matches!(l, SampledLuminaire::Impulse(Luminaire::Photometric { .. }))),
+            suns: any(|l| matches!(l, SampledLuminaire::Sun(_))),
         };
         KernelModel {
             features,
@@ -146,9 +157,9 @@ impl KernelModel {
 
     /// How the kernel finds light: where nothing is sampled, by chance alone gives the same numbers.
     fn light_sampling(&self) -> LightSampling {
-        let Features { point_luminaires, infinite_luminaires, area_luminaires, environment_sampling, .. } =
+        let Features { point_luminaires, infinite_luminaires, area_luminaires, environment_sampling, suns, .. } =
             self.features;
-        let sampled = point_luminaires || infinite_luminaires || area_luminaires || environment_sampling;
+        let sampled = point_luminaires || infinite_luminaires || area_luminaires || environment_sampling || suns;
         match self.integrator.estimator().light_sampling {
             LightSampling::Mis if !sampled => LightSampling::None,
             choice => choice,

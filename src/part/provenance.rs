@@ -2,7 +2,8 @@
 
 use crate::picture::{Crop, Development, Tone};
 use crate::scene::{
-    Environment, EnvironmentImage, FilmSettings, Mesh, Object, RenderSettings, Scene, Texture, Triangle,
+    Environment, EnvironmentImage, FilmSettings, Luminaire, Mesh, Object, Profile, RenderSettings, Scene, Texture,
+    Triangle,
 };
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -86,7 +87,7 @@ impl Provenance {
             (
                 "luminaires",
                 digest(|hash| {
-                    write(hash, luminaires);
+                    luminaires.iter().for_each(|luminaire| self::luminaire(hash, luminaire));
                     if let Some(Environment { radiance, image, rotation }) = environment {
                         write(hash, &(radiance, rotation));
                         if let Some(image) = image {
@@ -208,6 +209,16 @@ fn write(hash: &mut Sha256, value: &impl Debug) {
 
 fn floats(hash: &mut Sha256, values: &[f32]) {
     values.iter().for_each(|value| hash.update(value.to_le_bytes()));
+}
+
+/// Feeds a luminaire; the name of its profile makes no difference.
+fn luminaire(hash: &mut Sha256, luminaire: &Luminaire) {
+    let Luminaire::Photometric { position, direction, up, intensity, profile } = luminaire else {
+        return write(hash, luminaire);
+    };
+    let Profile { name: _, vertical, horizontal, candela } = &**profile;
+    write(hash, &(position, direction, up, intensity, vertical.len(), horizontal.len()));
+    [vertical, horizontal, candela].into_iter().for_each(|numbers| floats(hash, numbers));
 }
 
 fn geometry(meshes: &[Arc<Mesh>], objects: &[Object]) -> String {

@@ -7,7 +7,7 @@
 
 use super::prepared_scene::Reference;
 use super::surfel::Surfel;
-use crate::scene::light_tree::{CHILDREN, LEAF, LightNode};
+use crate::scene::light_tree::{CHILDREN, Child, LEAF, LightNode};
 use crate::scene::{LightChoice, LightTree};
 use glam::DVec3;
 
@@ -25,6 +25,8 @@ pub const INNER_SIDE: f64 = 1.0 / 32.0;
 pub const LEAST_WIDTH: u32 = 1 << 24;
 /// The largest fraction of 2^32 that is also an `f32`.
 pub const LAST_FRACTION: f64 = 4_294_967_040.0;
+/// What is added to a cosine before it is held against a cone's, for the rounding of axes to 16 bits.
+pub const CONE_COSINE_MARGIN: f64 = 2e-4;
 /// A choice among more numbers than these is none: it never happens, and one over its probability might not be a number.
 pub const MOST_NUMBERS: f64 = 1e30;
 
@@ -75,6 +77,15 @@ fn facing(cosine: f64, spread: f64) -> f64 {
     above * above / (4.0 * spread)
 }
 
+/// Whether some light of a ball may arrive that stays within cones: `cone` is their cosine around an axis, `cosine` that of the way here, `sine` the ball's radius
+/// over its distance.
+fn within_cone(cone: f64, cosine: f64, sine: f64) -> bool {
+    let other = (1.0 - sine * sine).max(0.0).sqrt();
+    // The cosine of the cone's angle and the ball's together, unless they are half a turn.
+    let both = cone * other - (1.0 - cone * cone).max(0.0).sqrt() * sine;
+    sine >= 1.0 || cone + other <= 0.0 || cosine + CONE_COSINE_MARGIN >= both
+}
+
 /// How much light of each child of a node may arrive at a surface with this normal, relative to each other; 0: surely none.
 pub fn light_importances(position: DVec3, normal: DVec3, node: &LightNode) -> [f64; CHILDREN] {
     let children: [_; CHILDREN] = std::array::from_fn(|number| node.child(number));
@@ -94,7 +105,12 @@ pub fn light_importances(position: DVec3, normal: DVec3, node: &LightNode) -> [f
         }
         let spread = sine + child.spread.sine;
         let inner = if child.closed { INNER_SIDE * facing(-cosine, spread) } else { 0.0 };
-        let emitted = if child.spread.sine >= 1.0 { 1.0 + cosine } else { facing(cosine, spread).max(inner) };
+        let emitted = match child {
+            Child { cone: true, .. } if within_cone(child.spread.sine, cosine, sine) => 1.0,
+            Child { cone: true, .. } => 0.0,
+            _ if child.spread.sine >= 1.0 => 1.0 + cosine,
+            _ => facing(cosine, spread).max(inner),
+        };
         if child.strength == 0.0 || incident == 0.0 || emitted == 0.0 {
             return 0.0;
         }
@@ -159,6 +175,13 @@ impl Reference {
             }
             node = &tree.nodes[link as usize];
         }
+    }
+
+    /// The probability of choosing a disc at infinity, which has this index in the luminaire table.
+    pub(super) fn sun_probability(&self, entry: usize) -> f64 {
+        let Some(tree) = self.light_tree() else { return self.luminaires.ideal_probability(entry) };
+        let outer = tree.outer.iter().position(|outer| *outer == Some(entry as u32));
+        outer.map_or(0.0, |outer| tree.outer_choice.pdf[outer])
     }
 
     /// The probability with which [`Reference::choose_luminaire`] gives an emissive triangle, by the tree, seen from a surface.

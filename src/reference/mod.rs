@@ -6,7 +6,7 @@
 //! | lecture | here |
 //! |---|---|
 //! | Surface Element Class | [`surfel`]: `Surfel`; [`bsdf`]: `Surfel::bsdf`; [`texture`]: `bilinear` |
-//! | Lighting Functions, Shadows & Attenuation, Area Luminaires | [`luminaire`]: `direct_light`; [`light_tree`]; [`environment`] |
+//! | Lighting Functions, Shadows & Attenuation, Area Luminaires | [`luminaire`]: `direct_light`; [`sun`]; [`profile`]; [`light_tree`]; [`environment`] |
 //! | Inefficient Integration, More Efficient Integration | [`bsdf`]: `bsdf_direction`, `bsdf_pdf`; [`warp`] |
 //! | Extinction | [`scatter`]: `scatter`, `survival` |
 //! | Impulse Reflection, Adding Transmission | [`impulse`]: `fresnel`, `refract`, `impulses` |
@@ -29,9 +29,11 @@ pub mod lost_light;
 pub mod luminaire;
 pub mod path;
 mod prepared_scene;
+pub mod profile;
 mod rounding;
 pub mod scatter;
 pub mod sensor;
+pub mod sun;
 pub mod surfel;
 pub mod texture;
 mod tracer;

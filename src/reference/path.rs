@@ -86,6 +86,7 @@ impl Reference {
                 if bounce > 0 || !settings.transparent {
                     let weight = emission_weight(estimator.light_sampling, pdf, self.environment_pdf(direction));
                     radiance += throughput * weight * self.environment_radiance(direction);
+                    radiance += throughput * self.sunlight(direction, pdf);
                 }
                 met(Vertex { hit: None, origin, direction, throughput, radiance });
                 break;

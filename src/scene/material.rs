@@ -1,5 +1,6 @@
 //! What surfaces are made of.
 
+use super::physical::Physical;
 use glam::Vec3;
 
 /// The surface's scattering and emission: normalised Blinn-Phong (slide "Surface Element Class") and impulses (slides "Impulse
@@ -41,6 +42,8 @@ pub struct Material {
     pub opacity: f32,
     /// Textures that multiply the numbers above.
     pub maps: Maps,
+    /// The metallic-roughness surface that scatters in place of all albedos above; none: what the lecture describes.
+    pub physical: Option<Physical>,
 }
 
 /// Indices into [`Scene::textures`](super::Scene::textures); each texture multiplies the number of the same name.
@@ -76,6 +79,7 @@ impl Default for Material {
             impulse_probability: None,
             opacity: 1.0,
             maps: Maps::default(),
+            physical: None,
         }
     }
 }
@@ -83,7 +87,9 @@ impl Default for Material {
 impl Material {
     /// Whether light goes through the surface, beside what its opacity lets pass.
     pub fn transmits(&self) -> bool {
-        self.transmission != Vec3::ZERO && self.eta.is_some()
+        let physical = self.physical.as_ref();
+        physical.is_some_and(|physical| physical.transmission > 0.0 && physical.metallic < 1.0)
+            || (self.transmission != Vec3::ZERO && self.eta.is_some())
     }
 
     /// Whether anything is mirrored or refracted.

@@ -120,6 +120,64 @@ fn under_a_sky_every_estimator_has_one_mean() {
     assert_eq!(validation_messages(), 0);
 }
 
+/// Under discs at infinity that overlap, with lamps of all kinds and a sky of one colour, and a mirror: whether light sampling finds them, chance, or both, by power
+/// or by the tree, the mean is the same. What chance never finds is left out.
+#[test]
+fn under_suns_every_estimator_has_one_mean() {
+    if on_the_old_driver() {
+        return;
+    }
+    let direct = Estimator { light_sampling: LightSampling::Direct, ..Estimator::default() };
+    let others = [
+        Estimator::default(),
+        Estimator { light_choice: LightChoice::Power, ..Estimator::default() },
+        Estimator { directions: Directions::Cosine, ..Estimator::default() },
+        Estimator { extinction: Extinction::Surface, ..Estimator::default() },
+        Estimator { light_choice: LightChoice::Power, ..direct },
+        Estimator { light_sampling: LightSampling::None, ..direct },
+    ];
+    let Some(backend) = backends().into_iter().next() else { return };
+    for lamps in [false, true] {
+        let mut scene = crate::common::stage::stage(32, 32);
+        scene.luminaires.retain(luminaire::scene::Luminaire::is_disc);
+        // So wide that paths find as much of them as light sampling does.
+        for luminaire in &mut scene.luminaires {
+            if let luminaire::scene::Luminaire::Sun { angle, .. } = luminaire {
+                *angle *= 3.0;
+            }
+        }
+        if lamps {
+            for x in [-1.5, 1.0] {
+                let panel = quad(Vec3::new(x, -0.75, -1.75), Vec3::X * 0.5, Vec3::Y * 0.75);
+                add(
+                    &mut scene,
+                    panel,
+                    Material { emission: Vec3::splat(2.0), ..matte(Vec3::splat(0.3)) },
+                    Affine3A::IDENTITY,
+                );
+            }
+        }
+        scene.integrator = Integrator::Path(direct);
+        let reference = measure(&backend, &scene);
+        for (index, estimator) in others.into_iter().enumerate() {
+            scene.integrator = Integrator::Path(estimator);
+            scene.settings.seed = index as u32 + 1;
+            let found = measure(&backend, &scene);
+            let z = (found.mean - reference.mean) / found.error.hypot(reference.error);
+            println!(
+                "lamps: {lamps}, {estimator:?}: {} +- {} for {} +- {}, z = {z:.2}",
+                found.mean, found.error, reference.mean, reference.error
+            );
+            assert!(
+                sidak(two_sided(z), 12) >= SIGNIFICANCE,
+                "lamps: {lamps}, {estimator:?}: {found:?} and {reference:?}, z = {z:.2}"
+            );
+            assert!(found.error < 1e-2 * found.mean, "lamps: {lamps}, {estimator:?}: not sharp");
+        }
+    }
+    assert_eq!(validation_messages(), 0);
+}
+
 /// A tracer that takes another integrator is as one that was opened with it, also where the sky is sampled otherwise then, or no more: bit for bit,
 /// on every backend and in the reference.
 #[test]

@@ -4,6 +4,7 @@
 use super::pictures::{differing, mean, pixels};
 use super::*;
 use crate::common::scenes::*;
+use crate::common::stage::*;
 use crate::common::statistics::*;
 use glam::Vec3;
 use luminaire::gpu::specialization::Features;
@@ -12,7 +13,7 @@ use luminaire::scene::{
     AreaSampling, Directions, Estimator, Extinction, Integrator, LightChoice, LightSampling, Projection, Scene,
 };
 
-/// The four scenes that have all features between them.
+/// The five scenes that have all features between them.
 pub fn scenes(size: u32) -> Vec<(&'static str, Scene)> {
     let mut parallel = textured_room(size, size);
     parallel.sensor.projection = Projection::Orthographic { height: 3.0 };
@@ -22,6 +23,7 @@ pub fn scenes(size: u32) -> Vec<(&'static str, Scene)> {
         ("textures", textured_room(size, size)),
         ("open air", open_air(size, size)),
         ("parallel", parallel),
+        ("stage", stage(size, size)),
     ]
 }
 

@@ -18,7 +18,7 @@ fn said(tracer: &Reference, from: &Surfel, index: usize, entry: &SampledLuminair
     let tree = tracer.light_tree().expect("a tree");
     match entry {
         SampledLuminaire::Area(t) => Some(tracer.tree_probability(tree, from, t.object, t.triangle)),
-        SampledLuminaire::Impulse(Luminaire::Point { .. }) => None,
+        SampledLuminaire::Impulse(luminaire) if !matches!(luminaire, Luminaire::Infinite { .. }) => None,
         _ => {
             let outer = tree.outer.iter().position(|outer| *outer == Some(index as u32)).expect("beside the tree");
             Some(tree.outer_choice.pdf[outer])

@@ -4,6 +4,7 @@
 mod common;
 
 mod coats;
+mod directed;
 mod environment;
 mod estimators;
 mod exposure;

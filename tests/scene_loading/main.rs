@@ -7,6 +7,7 @@ mod far;
 mod first_view;
 mod free_form;
 mod hostile;
+mod ies;
 mod lamps;
 mod mtl;
 mod obj;

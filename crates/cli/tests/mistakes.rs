@@ -234,7 +234,9 @@ fn scene_files() {
         ("", "[environment]\nfilename = \"sky.hdr\"\n", &["`image`"]),
         // Names.
         ("", "[[luminaire]]\nkind = \"area\"\n", &["a mesh whose material emits"]),
-        ("", "[[luminaire]]\nkind = \"spot\"\n", &["no such light"]),
+        ("", "[[luminaire]]\nkind = \"spotlight\"\n", &["\"spot\"", "`outer_angle`"]),
+        ("", "[[luminaire]]\nkind = \"projector\"\n", &["no such light"]),
+        ("", "[[luminaire]]\nkind = \"ies\"\n", &["`profile`"]),
         ("", "[[luminaire]]\nkind = \"sun\"\n", &["\"infinite\""]),
         ("", "[[luminaire]]\nkind = \"envmap\"\n", &["[environment]"]),
         ("", "[[luminaire]]\nkind = \"Point\"\n", &["write \"point\""]),

@@ -15,7 +15,9 @@ pub struct Source {
     pub two_sided: bool,
     /// Whether it is a part of a closed lamp, of which nobody outside sees the inner sides; then the normal is outward.
     pub closed: bool,
-    /// Intensity along the normal, averaged over the channels.
+    /// Degrees from the normal within which all of its light stays; then that light is the same within, as far as the tree is concerned.
+    pub cone: Option<f64>,
+    /// Intensity along the normal, or the mean of a cone's, averaged over the channels.
     pub strength: f64,
 }
 

@@ -4,9 +4,9 @@ use super::far::{self, FilePlace};
 use super::material_draft::{Draft, DraftMaps};
 use super::text_file::shortened;
 use super::texture::Textures;
-use super::{mtl, named_file, obj};
+use super::{ies, mtl, named_file, obj};
 use crate::Result;
-use crate::scene::{Maps, Material, Mesh, Object, Texture};
+use crate::scene::{Maps, Material, Mesh, Object, Profile, Texture};
 use glam::{DAffine3, DVec3};
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -40,6 +40,7 @@ pub(super) struct Loader {
     /// By material, the one that meshes with coloured vertices show instead.
     coloured: HashMap<u32, u32>,
     libraries: HashMap<PathBuf, HashMap<String, u32>>,
+    profiles: HashMap<PathBuf, Arc<Profile>>,
 }
 
 /// Faces of one material that lack texture coordinates.
@@ -67,6 +68,7 @@ impl Loader {
             mesh_files: HashMap::new(),
             coloured: HashMap::new(),
             libraries: HashMap::new(),
+            profiles: HashMap::new(),
         }
     }
 
@@ -122,6 +124,21 @@ impl Loader {
         self.without_uv.push(without_uv.collect());
         self.mesh_files.insert(identity, index);
         Ok(index)
+    }
+
+    /// The profile of a photometric file; the same file is read once.
+    ///
+    /// # Errors
+    /// If it cannot be read or is wrong.
+    pub(super) fn profile(&mut self, path: &Path) -> Result<Arc<Profile>> {
+        let identity = identity(path);
+        if let Some(profile) = self.profiles.get(&identity) {
+            return Ok(profile.clone());
+        }
+        let profile = Arc::new(ies::read(path, &mut self.warnings)?);
+        self.files.push(path.to_owned());
+        self.profiles.insert(identity, profile.clone());
+        Ok(profile)
     }
 
     /// The material that an object of `mesh` means by `name`: one of its own MTL files, else of any, else of the scene file.

@@ -184,6 +184,7 @@ impl Draft {
             impulse_probability: self.impulse_probability,
             opacity: self.opacity.unwrap_or(1.0),
             maps: Maps::default(),
+            physical: None,
         };
         if material.glossy != Vec3::ZERO && self.exponent.is_none() {
             warnings

@@ -9,6 +9,7 @@ mod environment;
 mod far;
 mod footing;
 mod ground;
+mod ies;
 mod lamplight;
 mod loader;
 mod material_draft;

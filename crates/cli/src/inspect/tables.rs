@@ -154,7 +154,36 @@ pub(super) fn luminaires(scene: &Scene) -> Vec<Vec<String>> {
                 format!("intensity {}", rgb(*intensity)),
                 chosen,
             ]),
-            SampledLuminaire::Impulse(Luminaire::Infinite { direction, irradiance }) => rows.push(vec![
+            SampledLuminaire::Impulse(Luminaire::Spot { position, direction, intensity, inner, outer }) => {
+                rows.push(vec![
+                    "spot".into(),
+                    format!("at {} towards {}, {inner} to {outer} degrees", point(scene, *position), rgb(*direction)),
+                    format!("intensity {}", rgb(*intensity)),
+                    chosen,
+                ]);
+            }
+            SampledLuminaire::Impulse(Luminaire::Photometric { position, direction, intensity, profile, .. }) => {
+                let (flux, most) = (profile.flux(), profile.largest());
+                rows.push(vec![
+                    "photometric".into(),
+                    format!("at {} towards {}", point(scene, *position), rgb(*direction)),
+                    format!("{} times {}: {flux:.0} lm, at most {most:.0} cd", rgb(*intensity), profile.name),
+                    chosen,
+                ]);
+            }
+            SampledLuminaire::Sun(sun) => {
+                let sine2 = sun.extent * (2.0 - sun.extent);
+                let degrees = 2.0 * sine2.sqrt().atan2(1.0 - sun.extent).to_degrees();
+                rows.push(vec![
+                    "sun disc".into(),
+                    format!("towards {}, {degrees:.4} degrees", rgb(-sun.towards)),
+                    format!("irradiance {}", rgb((sun.radiance * (std::f64::consts::PI * sine2)).as_vec3())),
+                    chosen,
+                ]);
+            }
+            SampledLuminaire::Impulse(
+                Luminaire::Infinite { direction, irradiance } | Luminaire::Sun { direction, irradiance, .. },
+            ) => rows.push(vec![
                 "infinite".into(),
                 format!("towards {}", rgb(*direction)),
                 format!("irradiance {}", rgb(*irradiance)),

@@ -1,9 +1,10 @@
-//! The tables `[[luminaire]]`, `[[material]]` and `[[object]]` of a scene file.
+//! The tables `[[material]]` and `[[object]]` of a scene file.
 
 use super::file::File;
 use super::radians;
-use super::tables::{LuminaireEntry, LuminaireKind, MapEntry, MaterialTable, ObjectTable, PlacedMap, Scale};
+use super::tables::{MapEntry, MaterialTable, ObjectTable, PlacedMap, Scale};
 use super::values::{Matrix, Triple};
+use crate::scene::Object;
 use crate::scene::load::loader::Loader;
 use crate::scene::load::material_draft::{Draft, DraftMaps, MapDraft};
 use crate::scene::load::near_name::instead_of;
@@ -11,7 +12,6 @@ use crate::scene::load::obj;
 use crate::scene::load::other_formats;
 use crate::scene::load::text_file::{line_and_column, shortened};
 use crate::scene::load::texture::MapFile;
-use crate::scene::{Luminaire, Object};
 use crate::{Error, Result};
 use ::toml::Spanned;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
@@ -19,27 +19,6 @@ use std::collections::HashSet;
 use std::path::Path;
 
 impl File<'_> {
-    /// A `[[luminaire]]`, in a scene with this origin.
-    pub(super) fn luminaire(&self, table: &Spanned<LuminaireEntry>, origin: DVec3) -> Result<Luminaire> {
-        let LuminaireEntry { kind, position, intensity, direction, irradiance } = table.get_ref();
-        match (kind, position, intensity, direction, irradiance) {
-            (LuminaireKind::Point, Some(position), Some(intensity), None, None) => {
-                Ok(Luminaire::Point { position: (position.0 - origin).as_vec3(), intensity: intensity.0 })
-            }
-            (LuminaireKind::Infinite, None, None, Some(direction), Some(irradiance)) => {
-                let Some(direction) = direction.rounded().as_dvec3().try_normalize() else {
-                    return Err(self.error(table.span(), "the direction of the luminaire is the zero vector"));
-                };
-                Ok(Luminaire::Infinite { direction: direction.as_vec3(), irradiance: irradiance.0 })
-            }
-            (LuminaireKind::Point, ..) => {
-                Err(self.error(table.span(), "a point luminaire has `position` and `intensity`, both and nothing else"))
-            }
-            (LuminaireKind::Infinite, ..) => Err(self
-                .error(table.span(), "an infinite luminaire has `direction` and `irradiance`, both and nothing else")),
-        }
-    }
-
     pub(super) fn materials(&self, tables: &[MaterialTable]) -> Result<Vec<Draft>> {
         let mut names = HashSet::new();
         let draft = |table: &MaterialTable| {

@@ -376,10 +376,35 @@ pub(super) const KEYS: &[Words] = &[
         "a point has `intensity` (power / (4 pi), three numbers), light at infinity `irradiance`",
     ),
     ("luminaire", &["location", "origin", "from", "translate", "pos"], "where a point is says `position`"),
+    ("luminaire", &["to", "target", "rotation", "look_at"], "the direction in which the light travels is `direction`"),
     (
         "luminaire",
-        &["to", "target", "rotation", "angle", "look_at"],
-        "the direction in which light at infinity travels is `direction`",
+        &[
+            "cutoff",
+            "cutoff_angle",
+            "cone",
+            "cone_angle",
+            "coneangle",
+            "beam_width",
+            "beam_angle",
+            "spot_size",
+            "spot_blend",
+            "innerconeangle",
+            "outerconeangle",
+            "inner_cone_angle",
+            "outer_cone_angle",
+        ],
+        "a spot has `outer_angle` and `inner_angle`, in degrees from its axis",
+    ),
+    (
+        "luminaire",
+        &["ies", "ies_file", "file", "filename", "photometry"],
+        "an IES file is named by `profile`, on a \"point\"",
+    ),
+    (
+        "luminaire",
+        &["angular_diameter", "diameter", "angular_size", "sun_size"],
+        "the diameter of a disc at infinity, in degrees, is `angle`",
     ),
     (
         "luminaire",
@@ -409,13 +434,23 @@ pub(super) const NAMES: &[Words] = &[
     ),
     (
         "point",
-        &["spot", "spotlight", "projector", "goniometric", "ies", "cone"],
+        &["spotlight", "spot_light", "cone"],
+        "it is called \"spot\", with `position`, `direction`, `intensity` and `outer_angle`",
+    ),
+    (
+        "point",
+        &["goniometric", "ies", "photometric"],
+        "it is a \"point\" with `position` and `profile`, the name of an IES file",
+    ),
+    (
+        "point",
+        &["projector", "texture"],
         "there is no such light: a small mesh whose material has `emission`, in a shade",
     ),
     (
         "point",
         &["sun", "directional", "distant", "directionallight", "parallel"],
-        "light at infinity is \"infinite\", with `direction` and `irradiance`",
+        "light at infinity is \"infinite\", with `direction` and `irradiance`; a sun has an `angle`",
     ),
     (
         "point",

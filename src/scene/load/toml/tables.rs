@@ -1,8 +1,8 @@
 //! The tables of a scene file, as `scenes/README.md` describes them.
 
 use super::values::{
-    Albedo, Angle, Blades, Bounces, Colour, Eta, Exact, Exponent, Exposure, FilterRadius, Finite, Fov, MapOffset,
-    MapScale, Matrix, NotNegative, Pixels, Positive, Probability, Samples, Shift, Triple, Unit,
+    Albedo, Angle, Blades, Bounces, Colour, ConeAngle, DiscAngle, Eta, Exact, Exponent, Exposure, FilterRadius, Finite,
+    Fov, MapOffset, MapScale, Matrix, NotNegative, Pixels, Positive, Probability, Samples, Shift, Triple, Unit,
 };
 use crate::scene::{AreaSampling, Directions, Extinction, Filter, LightChoice, LightSampling, Sampler, Tone};
 use ::toml::Spanned;
@@ -220,13 +220,19 @@ pub(super) struct LuminaireEntry {
     pub kind: LuminaireKind,
     pub position: Option<Triple>,
     pub intensity: Option<Colour>,
+    pub profile: Option<Spanned<String>>,
     pub direction: Option<Triple>,
+    pub up: Option<Triple>,
+    pub inner_angle: Option<Spanned<ConeAngle>>,
+    pub outer_angle: Option<ConeAngle>,
     pub irradiance: Option<Colour>,
+    pub angle: Option<DiscAngle>,
 }
 
 #[derive(Deserialize, Clone, Copy)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum LuminaireKind {
     Point,
+    Spot,
     Infinite,
 }

@@ -1,8 +1,8 @@
 //! Numbers of a scene file that are checked as they are read, so that an error points at the very value.
 
-use crate::scene::Estimator;
 use crate::scene::load::material_draft::{ETAS, LARGEST_EXPONENT};
 use crate::scene::load::texture::LARGEST_TRANSFORM;
+use crate::scene::{Estimator, LEAST_ANGLE};
 use glam::{DVec2, DVec3, Vec2, Vec3};
 use serde::de::{SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
@@ -156,6 +156,16 @@ pub(super) struct Probability(pub f32);
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(try_from = "f64")]
 pub(super) struct Angle(pub f32);
+
+/// Degrees from the axis of a spot.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(try_from = "f64")]
+pub(super) struct ConeAngle(pub f32);
+
+/// The diameter of a disc at infinity in degrees.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(try_from = "f64")]
+pub(super) struct DiscAngle(pub f32);
 
 /// Radius of a pixel filter in pixels.
 #[derive(Debug, Clone, Copy, Deserialize)]
@@ -341,6 +351,26 @@ impl TryFrom<f64> for Angle {
     type Error = &'static str;
     fn try_from(degrees: f64) -> Checked<Self> {
         (0.0..=180.0).contains(&degrees).then_some(Angle(degrees as f32)).ok_or("expected degrees from 0 to 180")
+    }
+}
+
+impl TryFrom<f64> for ConeAngle {
+    type Error = &'static str;
+    fn try_from(degrees: f64) -> Checked<Self> {
+        let angle = degrees as f32;
+        (0.0..=90.0).contains(&angle).then_some(ConeAngle(angle)).ok_or(
+            "expected degrees from the axis, 0 to 90; what shines further is a \"point\", with a `profile` perhaps",
+        )
+    }
+}
+
+impl TryFrom<f64> for DiscAngle {
+    type Error = &'static str;
+    fn try_from(degrees: f64) -> Checked<Self> {
+        let angle = degrees as f32;
+        (angle == 0.0 || (LEAST_ANGLE..=180.0).contains(&angle))
+            .then_some(DiscAngle(angle))
+            .ok_or("expected the diameter in degrees, 0.0001 to 180 (the sun's is 0.53), or 0 for parallel light")
     }
 }
 

@@ -1,0 +1,31 @@
+//! A disc at infinity, as tracers see it.
+
+use super::luminaire::one_minus_cos;
+use glam::{DVec3, Vec3};
+use std::f64::consts::PI;
+
+/// A disc at infinity.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SunDisc {
+    /// Unit vector to its middle.
+    pub towards: Vec3,
+    /// One minus the cosine of its angular radius.
+    pub extent: f64,
+    /// Radiance, the same all over it.
+    pub radiance: DVec3,
+}
+
+impl SunDisc {
+    /// The disc of a diameter in degrees, above 0 and at most 180, that gives this irradiance where it stands in the zenith: the integral of the cosine over it
+    /// is `pi sin^2` of its radius.
+    pub fn new(direction: Vec3, irradiance: Vec3, angle: f32) -> Self {
+        let extent = one_minus_cos(0.5 * f64::from(angle));
+        let sine2 = extent * (2.0 - extent);
+        SunDisc { towards: -direction, extent, radiance: irradiance.as_dvec3() / (PI * sine2) }
+    }
+
+    /// Density of an even choice of its directions, per steradian.
+    pub fn density(&self) -> f64 {
+        1.0 / (2.0 * PI * self.extent)
+    }
+}
