@@ -1,6 +1,8 @@
 // Rough surfaces as many small smooth ones (twins: src/reference/microfacet.rs). Directions are in the surface's frame, its normal +z; wo is above it;
 // `a` has the widths of the distribution along x and y.
 
+const float LEAST_ROUND = 0.01;     // what is left at least of round_width
+
 // What microfacets that reflect or transmit all are worth at a pair of directions.
 struct Microfacet {
     float value;     // per steradian, without the cosine; of refraction as shares of energy
@@ -30,6 +32,12 @@ vec3 visible_normal(vec2 a, vec3 wo, vec2 u) {
     vec2 sc = sin_cos_turns(u.x);
     vec3 h = vec3(sqrt(max(below * (2.0 - below), 0.0)) * sc.yx, 1.0 - below) + stretched;
     return normalize(vec3(h.xy * a, h.z));
+}
+
+// The width of a distribution that is the same all around, of which about as much is missing towards wo.
+float round_width(vec2 a, vec3 wo) {
+    if (a.x == a.y) return a.x;
+    return sqrt(0.5 * dot(a, a)) * max(sqrt(sqrt(max(1.0 - wo.x * wo.x, 0.0))), LEAST_ROUND);
 }
 
 // Microfacets that reflect wi into wo, both above.

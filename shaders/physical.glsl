@@ -4,11 +4,12 @@ const float LEAST_ALPHA = 1e-4;     // narrower microfacets are impulses
 const float COAT_INDEX = 1.5;
 const float LEAST_SHARE = 1e-6;     // what is divided by
 const float LEAST_COSINE = 1e-6;
+const float LEAST_THROUGH = 0.02;   // share of paths that go through rough glass from inside, of those that may
 
 // Numbers along the axes of the tables (src/scene/albedo_table.rs), which src/gpu/pack/physical.rs has in `physical`.
 const int ROUGH = 32;
 const int STEEP = 32;
-const int ROUGHNESSES = 16;
+const int ROUGHNESSES = 32;
 const int COSINES = 32;
 const int PHYSICAL_TEXELS = 10;
 
@@ -58,13 +59,13 @@ struct Lobes {
     vec3 many;                      // colour of what the dielectric reflects more than once
     float passed;                   // by the coat
     vec3 diffuse;
-    vec3 multiple;
+    vec3 again;                     // what of later reflections is added to the reflectance of microfacets
     float reflected;
     vec3 transmitted;
     bool straight;                  // what is transmitted is an impulse
     vec3 impulse_reflection;
     vec3 impulse_transmission;
-    vec4 shares;                    // albedos, about: cosine lobes, microfacets, what they transmit, coat
+    vec4 shares;                    // albedos, about: the body, microfacets, what they transmit, coat
 };
 
 vec4 physical_texel(int index) { return uintBitsToFloat(texelFetch(physical, index)); }
@@ -157,7 +158,8 @@ float missing(float cosine, float alpha) {
     float r = sqrt(alpha) * float(ROUGH - 1);
     int i = min(int(r), ROUGH - 2);
     // From the normal: one minus the steepness.
-    float back = alpha * (1.0 - cosine) / (cosine + alpha) * float(STEEP - 1);
+    float square = alpha * (1.0 - cosine) / (cosine + alpha);
+    float back = square / (1.0 + sqrt(max(1.0 - square, 0.0))) * float(STEEP - 1);
     int j = min(int(back), STEEP - 2);
     vec4 corners = physical_texel(i * (STEEP - 1) + STEEP - 2 - j);
     vec2 roots = mix(corners.yw, corners.xz, back - float(j));
@@ -188,12 +190,12 @@ vec4 dielectric_share(int rows, float cosine, float alpha) {
     return mix(above, mix(physical_texel(at), physical_texel(at + 1), c - float(j)), r - float(i));
 }
 
-// The means: edge in x, transmitted inside in w.
-vec4 dielectric_average(int rows, float alpha) {
+// The mean of what is reflected by (F - F0) / (1 - F0).
+float edge_average(int rows, float alpha) {
     float r = sqrt(alpha) * float(ROUGHNESSES - 1);
     int i = min(int(r), ROUGHNESSES - 2);
     int at = rows + i * (COSINES + 1) + COSINES;
-    return mix(physical_texel(at), physical_texel(at + COSINES + 1), r - float(i));
+    return mix(physical_texel(at).x, physical_texel(at + COSINES + 1).x, r - float(i));
 }
 
 // The colour of light that has met microfacets of this mean reflectance more than once, when it leaves them.
@@ -206,7 +208,7 @@ vec3 dielectric_reflectance(Lobes l, float cosine) {
     return l.f0 + (l.p.specular - l.f0) * ((f - l.normal) / (1.0 - l.normal));
 }
 
-// The share that the dielectric reflects in all, seen at a cosine, where this much is missing.
+// The share that the dielectric reflects in all, seen at a cosine, where this much is missing; from inside only about.
 vec3 dielectric_albedo(Lobes l, float cosine, float missing) {
     if (l.alpha == 0.0) return dielectric_reflectance(l, cosine);
     vec4 share = dielectric_share(int(l.p.rows), cosine, l.alpha);
@@ -214,17 +216,15 @@ vec3 dielectric_albedo(Lobes l, float cosine, float missing) {
     return (1.0 - missing) * (l.f0 + (l.p.specular - l.f0) * share.x) + missing * l.many;
 }
 
-// The mean of that over directions in proportion to their cosine.
+// The mean of that over directions in proportion to their cosine; from outside.
 vec3 dielectric_albedo_average(Lobes l, float missing) {
-    vec4 average = dielectric_average(int(l.p.rows), l.alpha);
-    if (l.inside) return vec3(1.0 - average.w);
-    return (1.0 - missing) * l.f0 + (l.p.specular - l.f0) * average.x + missing * l.many;
+    return (1.0 - missing) * l.f0 + (l.p.specular - l.f0) * edge_average(int(l.p.rows), l.alpha) + missing * l.many;
 }
 
 // What a smooth coat reflects of even light.
 float coat_average() {
     float f0 = fresnel(COAT_INDEX, 1.0);
-    return f0 + (1.0 - f0) * dielectric_average(coat_rows(), 0.0).x;
+    return f0 + (1.0 - f0) * edge_average(coat_rows(), 0.0);
 }
 
 // Of what a coat reflects more than once, the share that leaves it.
@@ -241,7 +241,7 @@ float coat_albedo(float cosine, float alpha) {
 
 // What the surface reflects and transmits of even light, about.
 vec3 hemispherical_albedo(Physical p) {
-    float x = dielectric_average(int(p.rows), 0.0).x;
+    float x = edge_average(int(p.rows), 0.0);
     vec3 f0 = normal_reflectance(p);
     vec3 reflected = f0 + (p.specular - f0) * x;
     vec3 base = mix(reflected + (1.0 - reflected) * p.base, metal_average(p), p.metallic);
@@ -280,7 +280,7 @@ Lobes physical_lobes(Physical p, vec3 normal, vec3 tangent, bool front, vec3 wo)
     bool impulse = is_smooth(p);
     vec2 w = widths(p);
     l.widths = vec2(w.x, max(w.y, LEAST_ALPHA));
-    l.alpha = impulse ? 0.0 : ANISOTROPY ? sqrt(l.widths.x * l.widths.y) : w.x;
+    l.alpha = impulse ? 0.0 : ANISOTROPY ? round_width(l.widths, l.wo) : w.x;
     float lost = impulse ? 0.0 : missing(cosine, l.alpha);
     float lost_average = impulse ? 0.0 : missing_average(l.alpha);
 
@@ -288,7 +288,7 @@ Lobes physical_lobes(Physical p, vec3 normal, vec3 tangent, bool front, vec3 wo)
     l.inside = body && !front;
     float index = index_of(p);
     l.f0 = normal_reflectance(p);
-    vec3 average = l.f0 + (p.specular - l.f0) * dielectric_average(int(p.rows), 0.0).x;
+    vec3 average = l.f0 + (p.specular - l.f0) * edge_average(int(p.rows), 0.0);
     l.many = multiple_colour(average, lost_average);
     l.eta = l.inside ? 1.0 / index : index;
     l.normal = fresnel(index, 1.0);
@@ -303,32 +303,35 @@ Lobes physical_lobes(Physical p, vec3 normal, vec3 tangent, bool front, vec3 wo)
     float insulator = (1.0 - p.metallic) * l.passed;
     float transmission = transmits(p);
     vec3 entered = 1.0 - reflects;
-    vec3 body_albedo = insulator * (1.0 - transmission) * p.base * entered;
-    l.diffuse = body_albedo / (PI * max(1.0 - dielectric_albedo_average(l, lost_average), LEAST_SHARE));
+    // From inside there is nothing between: either the scattering body, or the boundary.
+    vec3 body_albedo = insulator * (1.0 - transmission) * p.base;
+    if (!l.inside) body_albedo *= entered;
+    l.diffuse = l.inside ? body_albedo / PI : body_albedo / (PI * max(1.0 - dielectric_albedo_average(l, lost_average), LEAST_SHARE));
     vec3 many = l.inside ? vec3(0.0) : l.many;
-    vec3 multiple_albedo = lost * l.passed * mix(many, multiple_colour(metal_average(p), lost_average), p.metallic);
-    l.multiple = impulse ? vec3(0.0) : multiple_albedo / (PI * lost_average);
+    vec3 metal_many = multiple_colour(metal_average(p), lost_average);
+    l.again = lost / (1.0 - lost) * mix(many, metal_many, p.metallic);
     l.reflected = 1.0;
     l.transmitted = vec3(0.0);
     l.straight = true;
     vec3 through = vec3(0.0);
     if (ROUGH_TRANSMISSION) {
         vec4 share = dielectric_share(int(p.rows), cosine, l.alpha);
-        if (l.inside && !impulse) l.reflected = 1.0 / ((1.0 - lost) * share.z);
-        through = insulator * transmission * p.base * entered;
+        if (l.inside) l.reflected = impulse ? transmission : transmission / ((1.0 - lost) * share.z);
+        // Rough glass lets something through beyond the critical angle, too.
+        through = insulator * transmission * p.base * max(entered, l.inside && !impulse ? LEAST_THROUGH : 0.0);
         // What is hardly bent is hardly spread.
         l.straight = impulse || (body && w.x * (index - 1.0) < LEAST_ALPHA);
         if (!l.straight) {
             if (!body) l.transmitted = through / (1.0 - lost);
-            else if (l.inside) l.transmitted = insulator * transmission * p.base * l.reflected;
+            else if (l.inside) l.transmitted = insulator * p.base * l.reflected;
             else l.transmitted = through / max((1.0 - lost) * share.y, LEAST_SHARE);
         }
     }
-    vec3 once = l.inside ? reflects : reflects - lost * many;
-    vec3 mirrored = l.passed * mix(once, (1.0 - lost) * metal(p, cosine), p.metallic);
+    if (l.inside) reflects *= transmission;
+    vec3 mirrored = l.passed * mix(reflects, (1.0 - lost) * metal(p, cosine) + lost * metal_many, p.metallic);
     l.impulse_reflection = (impulse ? mirrored : vec3(0.0)) + (coat_smooth ? coat : 0.0);
     l.impulse_transmission = l.straight ? through : vec3(0.0);
-    l.shares = vec4(mean(body_albedo + multiple_albedo), impulse ? 0.0 : mean(mirrored), l.straight ? 0.0 : mean(through), coat_smooth ? 0.0 : coat);
+    l.shares = vec4(mean(body_albedo), impulse ? 0.0 : mean(mirrored), l.straight ? 0.0 : mean(through), coat_smooth ? 0.0 : coat);
     return l;
 }
 
@@ -353,21 +356,24 @@ vec4 physical_value_and_pdf(Lobes l, vec3 wi) {
         float f = fresnel(l.eta, min(facet.cosine, 1.0));
         return vec4(l.transmitted * ((1.0 - f) * facet.value), l.shares.z / all * facet.pdf);
     }
-    float cosine = min(wi.z, 1.0);
-    float lost = l.alpha > 0.0 ? missing(cosine, l.alpha) : 0.0;
-    vec3 value = l.diffuse == vec3(0.0) ? vec3(0.0) : l.diffuse * (1.0 - dielectric_albedo(l, cosine, lost));
+    vec3 value = l.diffuse;
+    if (!l.inside && value != vec3(0.0)) {
+        float cosine = min(wi.z, 1.0);
+        value *= 1.0 - dielectric_albedo(l, cosine, l.alpha > 0.0 ? missing(cosine, l.alpha) : 0.0);
+    }
     float pdf = l.shares.x * wi.z * (1.0 / PI);
     if (l.alpha > 0.0) {
         Microfacet facet = microfacet_reflection(l.widths, l.wo, wi);
         vec3 once = mix(l.reflected * dielectric_reflectance(l, facet.cosine), metal(l.p, facet.cosine), l.p.metallic);
-        value += l.multiple * lost + l.passed * facet.value * once;
+        value += l.passed * facet.value * (once + l.again);
         pdf += l.shares.y * facet.pdf;
     }
     if (CLEARCOATS && l.shares.w > 0.0) {
         float alpha = l.p.clearcoat_roughness * l.p.clearcoat_roughness;
         Microfacet facet = microfacet_reflection(vec2(alpha), l.wo, wi);
-        float back = coat_multiple(alpha) * missing(min(l.wo.z, 1.0), alpha) * missing(cosine, alpha) / (PI * missing_average(alpha));
-        value += l.p.clearcoat * (fresnel(COAT_INDEX, min(facet.cosine, 1.0)) * facet.value + back);
+        float absent = missing(min(l.wo.z, 1.0), alpha);
+        float again = coat_multiple(alpha) * absent / (1.0 - absent);
+        value += l.p.clearcoat * (fresnel(COAT_INDEX, min(facet.cosine, 1.0)) + again) * facet.value;
         pdf += l.shares.w * facet.pdf;
     }
     return vec4(value, pdf / all);

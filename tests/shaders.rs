@@ -288,6 +288,8 @@ fn twins() -> Vec<(&'static str, f64)> {
         ("COAT_INDEX", physical::COAT_INDEX),
         ("LEAST_SHARE", physical::LEAST_SHARE),
         ("LEAST_COSINE", physical::LEAST_COSINE),
+        ("LEAST_THROUGH", physical::LEAST_THROUGH),
+        ("LEAST_ROUND", luminaire::reference::microfacet::LEAST_ROUND),
         ("INSIDE", luminaire::gpu::probe::INSIDE.into()),
         ("MATERIAL_TEXELS", texels(size_of::<layout::Material>())),
         ("LUMINAIRE_TEXELS", texels(size_of::<layout::Luminaire>())),

@@ -1,6 +1,6 @@
 //! The numbers of [`AlbedoTable`] by quadrature: how much light leaves rough surfaces at once, and how much of it where.
 
-use super::fresnel::{fresnel, refract, reflect};
+use super::fresnel::{fresnel, reflect, refract};
 use super::microfacet::Ggx;
 use crate::scene::albedo_table::{
     AlbedoTable, COSINES, DielectricAlbedo, INDICES, ROUGH, ROUGHNESSES, ROW, STEEP, cosine_of_steepness, index_of_bent,
@@ -15,7 +15,12 @@ const GRAZING: f64 = 1e-6;
 
 /// The mean of a function of the microfacets that are seen at a cosine from the normal, by the midpoint rule with `n^2` of them. They lie about the plane of
 /// incidence alike on both sides.
-fn mean_of_visible<const N: usize>(alpha: f64, cosine: f64, n: u32, of: impl Fn(&Ggx, DVec3, DVec3) -> [f64; N]) -> [f64; N] {
+fn mean_of_visible<const N: usize>(
+    alpha: f64,
+    cosine: f64,
+    n: u32,
+    of: impl Fn(&Ggx, DVec3, DVec3) -> [f64; N],
+) -> [f64; N] {
     let ggx = Ggx { x: alpha, y: alpha };
     let wo = DVec3::new((1.0 - cosine * cosine).max(0.0).sqrt(), 0.0, cosine);
     let mut sums = [0.0; N];
@@ -37,7 +42,8 @@ fn shadowed(ggx: &Ggx, wo: DVec3, wi: DVec3) -> f64 {
 
 /// [`AlbedoTable::missing`].
 pub fn missing(cosine: f64, alpha: f64, n: u32) -> f64 {
-    let [missing] = mean_of_visible(alpha, cosine.max(GRAZING * alpha), n, |ggx, wo, h| [shadowed(ggx, wo, reflect(wo, h))]);
+    let [missing] =
+        mean_of_visible(alpha, cosine.max(GRAZING * alpha), n, |ggx, wo, h| [shadowed(ggx, wo, reflect(wo, h))]);
     missing
 }
 
@@ -62,7 +68,8 @@ pub fn dielectric_albedo(cosine: f64, alpha: f64, eta: f64, n: u32) -> Dielectri
             let (f_inside, _, transmitted_inside) = both(ggx, wo, h, 1.0 / eta);
             [reflected, edge(f) * reflected, transmitted, f_inside * reflected + transmitted_inside, transmitted_inside]
         });
-    let [edge, transmitted, inside, transmitted_inside] = [edge, transmitted, inside, transmitted_inside].map(|x| x / all);
+    let [edge, transmitted, inside, transmitted_inside] =
+        [edge, transmitted, inside, transmitted_inside].map(|x| x / all);
     DielectricAlbedo { edge, transmitted, inside, transmitted_inside }
 }
 
@@ -89,12 +96,14 @@ pub fn albedo_table(n: u32) -> AlbedoTable {
     let mean = |i: usize| average(|cosine| table.missing(cosine, narrow(i))) / narrow(i).powi(2);
     table.missing_average = (0..ROUGH).map(mean).collect();
     let rows = (0..INDICES * ROUGHNESSES * ROW).into_par_iter().map(|k| {
-        let (eta, alpha) = (index_of_bent(axis(k / ROW / ROUGHNESSES, INDICES)), alpha_of(k / ROW % ROUGHNESSES, ROUGHNESSES));
+        let (eta, alpha) =
+            (index_of_bent(axis(k / ROW / ROUGHNESSES, INDICES)), alpha_of(k / ROW % ROUGHNESSES, ROUGHNESSES));
         if k % ROW == COSINES {
             return [0.0; 4];
         }
         let cosine = axis(k % ROW, COSINES).powi(2);
-        let DielectricAlbedo { edge, transmitted, inside, transmitted_inside } = dielectric_albedo(cosine, alpha, eta, n);
+        let DielectricAlbedo { edge, transmitted, inside, transmitted_inside } =
+            dielectric_albedo(cosine, alpha, eta, n);
         [edge, transmitted, inside, transmitted_inside]
     });
     table.dielectric = rows.collect();
@@ -107,8 +116,7 @@ pub fn albedo_table(n: u32) -> AlbedoTable {
         };
         let all = |cosine: f64| if alpha == 0.0 { 1.0 } else { 1.0 - table.missing(cosine, alpha) };
         let edge = average(|cosine| all(cosine) * at(cosine).edge);
-        let inside = average(|cosine| at(cosine).transmitted_inside / at(cosine).inside);
-        table.dielectric[row * ROW + COSINES] = [edge, 0.0, 0.0, inside];
+        table.dielectric[row * ROW + COSINES] = [edge, 0.0, 0.0, 0.0];
     }
     table
 }

@@ -78,7 +78,14 @@ impl Surfel {
         let reflected = reflect(wo, normal);
         let Some(index) = self.eta else {
             let (transmission, transmitted) = (DVec3::ZERO, DVec3::ZERO);
-            return Impulses { reflection: self.reflection, reflected, transmission, transmitted, eta: 1.0, scattered: None };
+            return Impulses {
+                reflection: self.reflection,
+                reflected,
+                transmission,
+                transmitted,
+                eta: 1.0,
+                scattered: None,
+            };
         };
         if self.thin {
             let (reflectance, transmitted) = (thin_reflectance(fresnel(index, normal.dot(wo))), -wo);

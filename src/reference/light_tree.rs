@@ -168,8 +168,7 @@ impl Reference {
         let mut node = &tree.nodes[0];
         loop {
             numbers.renew();
-            let Some(cuts) = light_cuts(light_importances(from.position, from.receiver(), node), numbers.width)
-            else {
+            let Some(cuts) = light_cuts(light_importances(from.position, from.receiver(), node), numbers.width) else {
                 return 0.0;
             };
             let child = (path & 3) as usize;

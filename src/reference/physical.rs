@@ -2,11 +2,12 @@
 //!
 //! From above: a coat, of which the rest of the light gets what it lets through; then a metal beside a dielectric, both of the same microfacets;
 //! below the dielectric what it lets through is partly scattered by a Lambertian body, partly goes on. What microfacets send to each
-//! other is not lost: a lobe of its own gives it back (Kulla and Conty, "Revisiting Physically Based Shading at Imageworks", 2017), with the colour of the
-//! later reflections; what goes through is scaled to all that is not reflected (Turquin, "Practical Multiple Scattering Compensation for Microfacet Models", 2019).
+//! other is not lost: their lobe is scaled by it (Turquin, "Practical Multiple Scattering Compensation for Microfacet Models", 2019), with the colour of later
+//! reflections (Kulla and Conty, "Revisiting Physically Based Shading at Imageworks", 2017); what goes through is scaled to all that is not reflected. (A lobe
+//! of its own, as Kulla and Conty have it, would be reciprocal, but of little roughness it lies near the horizon alone, where no path looks for it.)
 //!
-//! Light may go either way through all that only reflects, without a coat. The coat takes its share by `wo` alone, and so does what is transmitted: there one
-//! direction is worth more than the other by the ratio of what the layer above lets through.
+//! Light may go either way where it is scattered by the body, and by microfacets but for that scale: one direction is worth more than the other by the ratio of
+//! what is missing at them, which is at most what is added. The coat takes its share by `wo` alone, and so does what is transmitted.
 
 use super::fresnel::{fresnel, fresnel_conductor, reflect, refract};
 use super::microfacet::{Ggx, Microfacet};
@@ -20,6 +21,8 @@ use std::f64::consts::PI;
 pub const COAT_INDEX: f64 = 1.5;
 /// A share that is divided by is at least this.
 pub const LEAST_SHARE: f64 = 1e-6;
+/// Inside of rough glass the share of paths that go through is at least this, of those that may.
+pub const LEAST_THROUGH: f64 = 0.02;
 /// A cosine to the normal is at least this.
 pub const LEAST_COSINE: f64 = 1e-6;
 
@@ -119,7 +122,7 @@ impl PhysicalSurface {
 
     /// What the surface reflects and transmits of even light, about: the same for all directions.
     pub fn hemispherical_albedo(&self) -> DVec3 {
-        let x = TABLE.dielectric_average(0.0, self.index()).edge;
+        let x = TABLE.edge_average(0.0, self.index());
         let (f0, f90) = (self.normal_reflectance(), self.specular);
         let reflected = f0 + (f90 - f0) * x;
         let dielectric = reflected + (1.0 - reflected) * self.base;
@@ -196,7 +199,7 @@ impl Dielectric {
         self.f0 + (self.f90 - self.f0) * ((f - self.normal) / (1.0 - self.normal))
     }
 
-    /// The share that the surface reflects in all, seen at a cosine.
+    /// The share that the surface reflects in all, seen at a cosine; from inside only about.
     fn albedo(&self, cosine: f64) -> DVec3 {
         if self.alpha == 0.0 {
             return self.reflectance(cosine);
@@ -209,14 +212,12 @@ impl Dielectric {
         (1.0 - missing) * (self.f0 + (self.f90 - self.f0) * share.edge) + missing * self.multiple
     }
 
-    /// The mean of that over directions in proportion to their cosine.
+    /// The mean of that over directions in proportion to their cosine; from outside.
     fn average(&self) -> DVec3 {
-        let average = TABLE.dielectric_average(self.alpha, self.index);
-        if self.inside {
-            return DVec3::splat(1.0 - average.transmitted_inside);
-        }
         let missing = if self.alpha == 0.0 { 0.0 } else { TABLE.missing_average(self.alpha) };
-        (1.0 - missing) * self.f0 + (self.f90 - self.f0) * average.edge + missing * self.multiple
+        (1.0 - missing) * self.f0
+            + (self.f90 - self.f0) * TABLE.edge_average(self.alpha, self.index)
+            + missing * self.multiple
     }
 }
 
@@ -240,8 +241,8 @@ pub struct Lobes {
     passed: f64,
     /// Of Lambert's lobe, but for what is reflected of `wi`.
     diffuse: DVec3,
-    /// Of the lobe of multiple reflections, but for what is missing at `wi`.
-    multiple: DVec3,
+    /// What of later reflections is added to the reflectance of microfacets.
+    again: DVec3,
     /// Factor to what microfacets of the dielectric reflect.
     reflected: f64,
     /// Factor to what they let through; zero where nothing, or where it is an impulse.
@@ -251,7 +252,7 @@ pub struct Lobes {
     /// Albedos of impulses.
     impulse_reflection: DVec3,
     impulse_transmission: DVec3,
-    /// Albedos, about, of what is scattered: cosine lobes, microfacets, what they transmit, coat.
+    /// Albedos, about, of what is scattered: the body, microfacets, what they transmit, coat.
     shares: [f64; 4],
 }
 
@@ -271,14 +272,14 @@ impl Lobes {
         let [along, across] = p.widths();
         let ggx = Ggx { x: along, y: across.max(LEAST_ALPHA) };
         let smooth = p.is_smooth();
-        let alpha = if smooth { 0.0 } else { (ggx.x * ggx.y).sqrt() };
+        let alpha = if smooth { 0.0 } else { ggx.round(wo) };
         let missing = if smooth { 0.0 } else { TABLE.missing(cosine, alpha) };
         let missing_average = if smooth { 0.0 } else { TABLE.missing_average(alpha) };
 
         let inside = p.body && !front;
         let index = p.index();
         let (f0, f90) = (p.normal_reflectance(), p.specular);
-        let average = f0 + (f90 - f0) * TABLE.dielectric_average(0.0, index).edge;
+        let average = f0 + (f90 - f0) * TABLE.edge_average(0.0, index);
         let multiple = multiple_colour(average, missing_average);
         let eta = if inside { 1.0 / index } else { index };
         let normal_reflectance = fresnel(index, 1.0);
@@ -295,14 +296,20 @@ impl Lobes {
         let insulator = (1.0 - p.metallic) * passed;
         let transmission = p.transmits();
         let entered = DVec3::ONE - reflects;
-        let body = insulator * (1.0 - transmission) * p.base;
-        let diffuse = body * entered / (PI * (1.0 - dielectric.average()).max(DVec3::splat(LEAST_SHARE)));
+        // From inside there is nothing between: either the scattering body, or the boundary.
+        let body = insulator * (1.0 - transmission) * p.base * if inside { DVec3::ONE } else { entered };
+        let diffuse = match inside {
+            true => body / PI,
+            false => body / (PI * (1.0 - dielectric.average()).max(DVec3::splat(LEAST_SHARE))),
+        };
         let metal_multiple = multiple_colour(p.metal_average(), missing_average);
         let dielectric_multiple = if inside { DVec3::ZERO } else { multiple };
-        let multiple_albedo = missing * passed * (p.metallic * metal_multiple + (1.0 - p.metallic) * dielectric_multiple);
-        let multiple = if smooth { DVec3::ZERO } else { multiple_albedo / (PI * missing_average) };
-        let reflected = if inside && !smooth { 1.0 / ((1.0 - missing) * share.inside) } else { 1.0 };
-        let through = insulator * transmission * p.base * entered;
+        let again = missing * (p.metallic * metal_multiple + (1.0 - p.metallic) * dielectric_multiple);
+        let of_boundary = if inside { transmission } else { 1.0 };
+        let reflected = if inside && !smooth { of_boundary / ((1.0 - missing) * share.inside) } else { of_boundary };
+        // Rough glass lets something through beyond the critical angle, too.
+        let least = if inside && !smooth { LEAST_THROUGH } else { 0.0 };
+        let through = insulator * transmission * p.base * entered.max(DVec3::splat(least));
         // What is hardly bent is hardly spread.
         let straight = smooth || (p.body && along * (index - 1.0) < LEAST_ALPHA);
         let transmitted = if straight {
@@ -310,13 +317,12 @@ impl Lobes {
         } else if !p.body {
             through / (1.0 - missing)
         } else if inside {
-            insulator * transmission * p.base * reflected
+            insulator * p.base * reflected
         } else {
             through / ((1.0 - missing) * share.transmitted).max(LEAST_SHARE)
         };
-        // From inside all that is reflected by microfacets comes out after one reflection; from outside the rest is `multiple`.
-        let once = if inside { reflects } else { reflects - missing * dielectric_multiple };
-        let mirrored = passed * (p.metallic * (1.0 - missing) * p.metal(cosine) + (1.0 - p.metallic) * once);
+        let metal = (1.0 - missing) * p.metal(cosine) + missing * metal_multiple;
+        let mirrored = passed * (p.metallic * metal + (1.0 - p.metallic) * of_boundary * reflects);
         let coat_colour = DVec3::splat(coat);
         let impulse = |colour: DVec3, is: bool| if is { colour } else { DVec3::ZERO };
         let scattered = |colour: DVec3, is: bool| mean(impulse(colour, is));
@@ -329,14 +335,14 @@ impl Lobes {
             dielectric,
             passed,
             diffuse,
-            multiple,
+            again: again / (1.0 - missing),
             reflected,
             transmitted,
             straight,
             impulse_reflection: impulse(mirrored, smooth) + impulse(coat_colour, coat_smooth),
             impulse_transmission: impulse(through, straight),
             shares: [
-                mean(body * entered + multiple_albedo),
+                mean(body),
                 scattered(mirrored, !smooth),
                 scattered(through, !straight),
                 scattered(coat_colour, !coat_smooth),
@@ -392,22 +398,24 @@ impl Lobes {
             return (self.transmitted * passed * through.value / eta2, through_share / all * through.pdf);
         }
         let cosine = wi.z.min(1.0);
-        let mut value = self.diffuse * (DVec3::ONE - self.dielectric.albedo(cosine));
+        let mut value = self.diffuse;
+        if !self.dielectric.inside {
+            value *= DVec3::ONE - self.dielectric.albedo(cosine);
+        }
         let mut pdf = cosine_share * wi.z / PI;
         if self.dielectric.alpha > 0.0 {
             let facet = self.ggx.reflection(self.wo, wi);
             let metal = self.surface.metallic * self.surface.metal(facet.cosine);
             let dielectric = (1.0 - self.surface.metallic) * self.reflected * self.dielectric.reflectance(facet.cosine);
-            value += self.multiple * TABLE.missing(cosine, self.dielectric.alpha);
-            value += self.passed * facet.value * (metal + dielectric);
+            value += self.passed * facet.value * (metal + dielectric + self.again);
             pdf += microfacet_share * facet.pdf;
         }
         if coat_share > 0.0 {
             let Microfacet { value: once, pdf: density, cosine: to_facet } = self.coat_ggx.reflection(self.wo, wi);
             let alpha = self.coat_ggx.x;
             let missing = TABLE.missing(self.wo.z.min(1.0), alpha);
-            let back = coat_multiple(alpha) * missing * TABLE.missing(cosine, alpha) / (PI * TABLE.missing_average(alpha));
-            value += self.surface.clearcoat * (fresnel(COAT_INDEX, to_facet.min(1.0)) * once + back);
+            let again = coat_multiple(alpha) * missing / (1.0 - missing);
+            value += self.surface.clearcoat * (fresnel(COAT_INDEX, to_facet.min(1.0)) + again) * once;
             pdf += coat_share * density;
         }
         (value, pdf / all)
@@ -464,7 +472,7 @@ fn coat_multiple(alpha: f64) -> f64 {
 /// What a smooth coat reflects of even light.
 fn coat_average() -> f64 {
     let f0 = fresnel(COAT_INDEX, 1.0);
-    f0 + (1.0 - f0) * TABLE.dielectric_average(0.0, COAT_INDEX).edge
+    f0 + (1.0 - f0) * TABLE.edge_average(0.0, COAT_INDEX)
 }
 
 /// The frame about a normal: x along the tangent where it matters, and where there is one.

@@ -1,8 +1,9 @@
 //! How much of the light that falls on rough surfaces of microfacets (`reference::microfacet`) leaves them after one reflection or refraction.
 //! What is missing to 1 goes on between the microfacets: by these numbers it is not lost.
 //!
-//! The table is made by `examples/albedo_table.rs` and kept beside this file: `f32`, little-endian. Between its numbers all is linear.
+//! The table is made by `examples/albedo_table.rs` and kept beside this file, little-endian: `f32` of what is missing, half floats of dielectrics. Between its numbers all is linear.
 
+use half::f16;
 use std::sync::LazyLock;
 
 /// Numbers along the axes of the albedo of all-reflecting microfacets: roughness, and how far from grazing.
@@ -10,9 +11,9 @@ pub const ROUGH: usize = 32;
 /// The second of these.
 pub const STEEP: usize = 32;
 /// Numbers along the axes of what dielectrics do: index, roughness, cosine.
-pub const INDICES: usize = 24;
+pub const INDICES: usize = 32;
 /// The second of these.
-pub const ROUGHNESSES: usize = 16;
+pub const ROUGHNESSES: usize = 32;
 /// The third of these.
 pub const COSINES: usize = 32;
 /// Numbers of a row of dielectrics: the cosines, and the mean over them.
@@ -33,22 +34,13 @@ pub struct DielectricAlbedo {
     pub transmitted_inside: f64,
 }
 
-/// Means over directions in proportion to their cosine.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct DielectricAverage {
-    /// Of the albedo by `(F - F0) / (1 - F0)`.
-    pub edge: f64,
-    /// From inside, of what is transmitted over what leaves at all.
-    pub transmitted_inside: f64,
-}
-
 /// The numbers of the file.
 pub struct AlbedoTable {
     /// `[roughness][steepness]`: the root of what is missing to 1, which goes to 0 towards the normal as the steepness to 1.
     pub missing: Vec<f64>,
     /// The mean of each roughness, over the square of the width.
     pub missing_average: Vec<f64>,
-    /// `[index][roughness][cosine, then the mean]`; of the mean `edge` and, in `transmitted_inside`, the other one.
+    /// `[index][roughness][cosine, then the mean]`; of the mean only `edge`, and not over what is missing to 1.
     pub dielectric: Vec<[f64; 4]>,
 }
 
@@ -65,14 +57,15 @@ fn place(x: f64, numbers: usize) -> (usize, f64) {
     (before, x - before as f64)
 }
 
-/// The place of a cosine on the axis of steepness: narrow lobes are all alike near grazing, but for the scale.
+/// The place of a cosine on the axis of steepness: narrow lobes are all alike near grazing, but for the scale; and there what is missing goes as the cosine.
 pub fn steepness(cosine: f64, alpha: f64) -> f64 {
-    cosine * (1.0 + alpha) / (cosine + alpha)
+    (cosine * (1.0 + alpha) / (cosine + alpha)).sqrt()
 }
 
 /// The cosine of a steepness.
 pub fn cosine_of_steepness(steepness: f64, alpha: f64) -> f64 {
-    steepness * alpha / (1.0 + alpha - steepness)
+    let square = steepness * steepness;
+    square * alpha / (1.0 + alpha - square)
 }
 
 /// The place of an index, at least 1, on its axis.
@@ -93,18 +86,22 @@ fn lerp(a: f64, b: f64, t: f64) -> f64 {
 impl AlbedoTable {
     /// From the bytes of the file.
     fn new(bytes: &[u8]) -> Self {
-        let mut numbers = bytes.chunks_exact(4).map(|b| f64::from(f32::from_le_bytes([b[0], b[1], b[2], b[3]])));
+        let (singles, halves) = bytes.split_at(4 * (ROUGH * STEEP + ROUGH));
+        let mut numbers = singles.chunks_exact(4).map(|b| f64::from(f32::from_le_bytes([b[0], b[1], b[2], b[3]])));
         let mut take = |n: usize| -> Vec<f64> { numbers.by_ref().take(n).collect() };
         let (missing, missing_average) = (take(ROUGH * STEEP), take(ROUGH));
-        let dielectric = take(4 * INDICES * ROUGHNESSES * ROW);
-        let dielectric = dielectric.chunks_exact(4).map(|c| [c[0], c[1], c[2], c[3]]).collect();
+        let half = |b: &[u8], i: usize| f16::from_le_bytes([b[2 * i], b[2 * i + 1]]).to_f64();
+        let dielectric = halves.chunks_exact(8).map(|b| [half(b, 0), half(b, 1), half(b, 2), half(b, 3)]).collect();
         AlbedoTable { missing, missing_average, dielectric }
     }
 
     /// The bytes of the file.
     pub fn bytes(&self) -> Vec<u8> {
-        let numbers = self.missing.iter().chain(&self.missing_average).chain(self.dielectric.iter().flatten());
-        numbers.flat_map(|number| (*number as f32).to_le_bytes()).collect()
+        let singles = self.missing.iter().chain(&self.missing_average);
+        let mut bytes: Vec<u8> = singles.flat_map(|number| (*number as f32).to_le_bytes()).collect();
+        let halves = self.dielectric.iter().flatten();
+        bytes.extend(halves.flat_map(|number| f16::from_f64(*number).to_le_bytes()));
+        bytes
     }
 
     /// Share of the light that microfacets which reflect all do not send away at once; `alpha` is the width of their distribution.
@@ -143,10 +140,9 @@ impl AlbedoTable {
         DielectricAlbedo { edge: of(0), transmitted: of(1), inside: of(2), transmitted_inside: of(3) }
     }
 
-    /// The means of that.
-    pub fn dielectric_average(&self, alpha: f64, eta: f64) -> DielectricAverage {
+    /// The mean of what is reflected by `(F - F0) / (1 - F0)` over directions in proportion to their cosine.
+    pub fn edge_average(&self, alpha: f64, eta: f64) -> f64 {
         let (i, s) = place(alpha.sqrt(), ROUGHNESSES);
-        let (a, b) = (self.dielectric_at(eta, i, COSINES), self.dielectric_at(eta, i + 1, COSINES));
-        DielectricAverage { edge: lerp(a[0], b[0], s), transmitted_inside: lerp(a[3], b[3], s) }
+        lerp(self.dielectric_at(eta, i, COSINES)[0], self.dielectric_at(eta, i + 1, COSINES)[0], s)
     }
 }

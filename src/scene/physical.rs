@@ -158,7 +158,11 @@ impl Physical {
     pub fn not_modelled(&self) -> Vec<&'static str> {
         let film = self.iridescence > 0.0;
         let fibres = self.sheen_color != Vec3::ZERO;
-        let all = [("sheen", fibres), ("iridescence", film), ("dispersion", self.dispersion > 0.0 && self.transmission > 0.0)];
+        let all = [
+            ("sheen", fibres),
+            ("iridescence", film),
+            ("dispersion", self.dispersion > 0.0 && self.transmission > 0.0),
+        ];
         all.into_iter().filter(|(_, asked)| *asked).map(|(name, _)| name).collect()
     }
 }
@@ -170,8 +174,7 @@ pub fn conductor_reflectance(eta: f64, k: f64, cos_i: f64) -> f64 {
     let ab = (t0 * t0 + 4.0 * eta * eta * k * k).sqrt();
     let a = (0.5 * (ab + t0)).max(0.0).sqrt();
     let s = (ab + c2 - 2.0 * cos_i * a) / (ab + c2 + 2.0 * cos_i * a);
-    let p =
-        s * (c2 * ab + s2 * s2 - 2.0 * cos_i * s2 * a) / (c2 * ab + s2 * s2 + 2.0 * cos_i * s2 * a);
+    let p = s * (c2 * ab + s2 * s2 - 2.0 * cos_i * s2 * a) / (c2 * ab + s2 * s2 + 2.0 * cos_i * s2 * a);
     0.5 * (s + p)
 }
 

@@ -12,7 +12,7 @@ use luminaire::scene::{
     AreaSampling, Directions, Estimator, Extinction, Integrator, LightChoice, LightSampling, Projection, Scene,
 };
 
-/// The four scenes that have all features between them.
+/// The scenes that have all features between them.
 pub fn scenes(size: u32) -> Vec<(&'static str, Scene)> {
     let mut parallel = textured_room(size, size);
     parallel.sensor.projection = Projection::Orthographic { height: 3.0 };
@@ -21,6 +21,7 @@ pub fn scenes(size: u32) -> Vec<(&'static str, Scene)> {
         ("glass", glass_room(size, size)),
         ("textures", textured_room(size, size)),
         ("open air", open_air(size, size)),
+        ("physical", physical_room(size, size)),
         ("parallel", parallel),
     ]
 }
@@ -31,7 +32,7 @@ pub fn scenes(size: u32) -> Vec<(&'static str, Scene)> {
 fn every_feature_equals_the_reference_pixel_by_pixel() {
     for (name, mut scene) in scenes(96) {
         if let Integrator::Path(estimator) = &mut scene.integrator {
-            estimator.max_bounces = Some(if name == "glass" { 3 } else { 1 });
+            estimator.max_bounces = Some(if ["glass", "physical"].contains(&name) { 3 } else { 1 });
         }
         let expected = pixels(&mut Reference::new(&scene), &scene, 8);
         on_every_backend(|backend| {

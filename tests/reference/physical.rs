@@ -69,8 +69,10 @@ fn kinds() -> Vec<(String, Surfel)> {
 #[test]
 fn lobes_have_their_density() {
     const N: u32 = 60_000;
-    let cases: Vec<_> =
-        kinds().into_iter().flat_map(|(name, surfel)| [10.0, 50.0, 82.0].map(|at| (name.clone(), surfel, at))).collect();
+    let cases: Vec<_> = kinds()
+        .into_iter()
+        .flat_map(|(name, surfel)| [10.0, 50.0, 82.0].map(|at| (name.clone(), surfel, at)))
+        .collect();
     let tests: Vec<(String, f64)> = cases
         .par_iter()
         .enumerate()
@@ -78,9 +80,19 @@ fn lobes_have_their_density() {
             // Across what is brushed, too.
             let turned = |w: DVec3| DVec3::new(0.8 * w.x, 0.6 * w.x, w.z);
             let wo = turned(tilted(*degrees));
-            let cells = Cells { axis: turned(tilted(-degrees)), power: 3 };
             let lobes = surfel.lobes(wo).expect("it has lobes");
-            let mut expected = cells.integrate_by::<8>(|wi| f64::from(N) * lobes.value_and_pdf(wi).1);
+            // Narrow about what a smooth surface reflects and transmits.
+            let through = lobes.impulse_directions(DVec3::Z, wo)[1];
+            let above = Cells { axis: turned(tilted(-degrees)), power: 3 };
+            let p = surfel.physical.expect("a surface");
+            let straight = through == DVec3::ZERO || (p.roughness > 0.5 && p.ior < 1.2);
+            let below = Cells { axis: if straight { -wo } else { through }, power: 4 };
+            let density = |side: f64| {
+                move |wi: DVec3| if wi.z * side > 0.0 { f64::from(N) * lobes.value_and_pdf(wi).1 } else { 0.0 }
+            };
+            let mut expected = above.integrate_by::<8>(density(1.0));
+            let cells_above = expected.len();
+            expected.extend(below.integrate_by::<12>(density(-1.0)));
             let mass = expected.iter().sum::<f64>() / f64::from(N);
             assert!(mass <= 1.0 + 2e-3, "{name} at {degrees}: a density of {mass}");
             expected.push((1.0 - mass).max(0.0) * f64::from(N));
@@ -89,7 +101,12 @@ fn lobes_have_their_density() {
                 let [u, v, lobe, _] = random4(i, index as u32, 1, 17).map(uniform);
                 let wi = lobes.direction([u, v], lobe);
                 assert!(wi == DVec3::ZERO || (wi.length() - 1.0).abs() < 1e-9, "{name}: {wi}");
-                counts[if wi == DVec3::ZERO { expected.len() - 1 } else { cells.cell(wi) }] += 1;
+                let cell = match wi.z {
+                    0.0 => expected.len() - 1,
+                    z if z > 0.0 => above.cell(wi),
+                    _ => cells_above + below.cell(wi),
+                };
+                counts[cell] += 1;
             }
             (format!("{name} at {degrees} degrees"), chi_square_against(&counts, &expected))
         })
@@ -115,7 +132,10 @@ fn scatter_gives_value_over_density() {
                 assert_eq!(pdf, bsdf_pdf(&surfel, wo, scattered.wi, directions));
                 let expected = surfel.bsdf(wo, scattered.wi) * scattered.wi.z.abs() / pdf;
                 assert!((scattered.weight - expected).length() <= 1e-9 * expected.length(), "{name}");
-                assert!(directions != Directions::Bsdf || scattered.weight.max_element() < 20.0, "{name}: {scattered:?}");
+                assert!(
+                    directions != Directions::Bsdf || scattered.weight.max_element() * scattered.eta2 < 20.0,
+                    "{name}: {scattered:?}"
+                );
             }
         }
         // All ways to choose directions find the same.
@@ -172,6 +192,8 @@ fn white_surfaces_lose_and_gain_nothing() {
             }
         }
     }
+    // Numbers of the table lie far apart for what is hardly bent, and near grazing.
+    let most = |ior: f32, degrees: f64| if ior < 1.2 || degrees > 80.0 { 0.02 } else { 0.01 };
     let worst: Vec<(f64, String)> = cases
         .par_iter()
         .flat_map_iter(|(p, thin, front)| {
@@ -182,7 +204,7 @@ fn white_surfaces_lose_and_gain_nothing() {
                     "roughness {roughness}, index {ior}, transmission {transmission}, metallic {metallic}, thin {thin}, front {front}, at {degrees} \
                      degrees: {albedo}"
                 );
-                (albedo - 1.0, what)
+                ((albedo - 1.0) * 0.01 / most(*ior, degrees), what)
             })
         })
         .collect();
@@ -190,7 +212,7 @@ fn white_surfaces_lose_and_gain_nothing() {
         println!("{what}");
     }
     let (off, what) = worst.iter().max_by(|a, b| a.0.abs().total_cmp(&b.0.abs())).expect("some");
-    println!("off by at most {off:.2e}: {what}");
+    println!("off by at most {off:.2e} (of what is allowed as 0.01): {what}");
     assert!(off.abs() <= 0.01, "{what}");
 }
 
@@ -203,7 +225,14 @@ fn coats_and_brushes_gain_nothing() {
             for metallic in [0.0, 0.5, 1.0] {
                 for (transmission, anisotropy) in [(0.0, 0.0), (0.6, 0.0), (0.0, 0.7)] {
                     let specular_color = Vec3::new(2.0, 1.0, 0.0);
-                    let base = Physical { metallic, transmission, anisotropy, roughness, specular_color, ..Physical::default() };
+                    let base = Physical {
+                        metallic,
+                        transmission,
+                        anisotropy,
+                        roughness,
+                        specular_color,
+                        ..Physical::default()
+                    };
                     cases.push(Physical { clearcoat: 1.0, clearcoat_roughness, ..base.clone() });
                     if clearcoat_roughness == 0.0 {
                         cases.push(base);
@@ -212,28 +241,38 @@ fn coats_and_brushes_gain_nothing() {
             }
         }
     }
-    let found: Vec<f64> = cases
+    let found: Vec<(bool, String, f64)> = cases
         .par_iter()
         .flat_map_iter(|p| {
             [0.0, 60.0, 85.0].map(|degrees| {
                 let albedo = albedo_of(&physical_surfel(p, false, true), tilted(degrees), 8_000);
                 // Numbers of the table are a little off, those for what is brushed more so.
-                let most = if p.anisotropy > 0.0 { 1.03 } else { 1.005 };
-                assert!(albedo.max_element() <= most, "{p:?} at {degrees} degrees: {albedo}");
-                assert!(albedo.min_element() >= if p.anisotropy > 0.0 { 0.9 } else { 0.97 }, "{p:?} at {degrees} degrees: {albedo}");
-                albedo.max_element()
+                let most = if p.anisotropy > 0.0 { 1.05 } else { 1.01 };
+                let (low, high) = (albedo.min_element(), albedo.max_element());
+                let least = if p.anisotropy > 0.0 { 0.9 } else { 0.97 };
+                let Physical { roughness, clearcoat, clearcoat_roughness, metallic, transmission, anisotropy, .. } = p;
+                let what = format!(
+                    "roughness {roughness}, coat {clearcoat} {clearcoat_roughness}, metallic {metallic}, transmission {transmission}, \
+                     anisotropy {anisotropy}, {degrees} degrees: {albedo}"
+                );
+                (low < least || high > most, what, high)
             })
         })
         .collect();
-    println!("at most {}", found.iter().fold(0.0, |a: f64, b| a.max(*b)));
+    for (_, what, _) in found.iter().filter(|(off, ..)| *off) {
+        println!("{what}");
+    }
+    println!("at most {}", found.iter().fold(0.0, |a: f64, (_, _, b)| a.max(*b)));
+    assert!(!found.iter().any(|(off, ..)| *off));
 }
 
-/// Where nothing is transmitted and there is no coat light may go either way; elsewhere one way is worth more by what the layer above lets through.
+/// Light may go either way through the body below a dielectric, and by microfacets but for what is added of later reflections; a coat takes its share by what
+/// it lets through of one of the directions: these ratios are what they are said to be.
 #[test]
-fn what_only_reflects_is_reciprocal() {
+fn reciprocity_fails_by_no_more_than_is_said() {
     let pair = |i: u32| {
         let [a, b, c, d] = random4(i, 5, 8, 2).map(uniform);
-        let wo = uniform_hemisphere(DVec3::Z, 1.0 - (1.0 - a).powi(3), b);
+        let wo = uniform_hemisphere(DVec3::Z, 1.0 - (1.0 - a).powi(3).max(1e-5), b);
         (wo, uniform_hemisphere(DVec3::Z, c, d))
     };
     for (name, surfel) in kinds() {
@@ -244,11 +283,19 @@ fn what_only_reflects_is_reciprocal() {
         for i in 0..500 {
             let (wo, wi) = pair(i);
             let (there, back) = (surfel.bsdf(wo, wi), surfel.bsdf(wi, wo));
-            assert!((there - back).length() <= 1e-9 * there.length(), "{name}: {there} {back}");
+            let missing = |w: DVec3| TABLE.missing(w.z, (p.roughness * p.roughness).max(p.anisotropy));
+            let bound = 1.0 / (1.0 - missing(wo).max(missing(wi)));
+            let ratio = (there / back).max(back / there).max_element();
+            assert!(ratio <= bound * (1.0 + 1e-9), "{name}: {there} {back}, {ratio} above {bound}");
+            // A white metal's is the ratio of what is missing.
+            if p.metallic == 1.0 && p.anisotropy == 0.0 {
+                let expected = (1.0 - missing(wi)) / (1.0 - missing(wo));
+                assert!((there.x / back.x / expected - 1.0).abs() < 1e-6, "{name}: {there} {back} {expected}");
+            }
         }
     }
     // A coat takes its share by one of the directions: what the other lets through over that bounds the ratio.
-    let coated = Physical { clearcoat: 1.0, clearcoat_roughness: 0.0, ..metal(0.5) };
+    let coated = Physical { clearcoat: 1.0, clearcoat_roughness: 0.0, metallic: 0.0, specular: 0.0, ..metal(0.5) };
     let surfel = physical_surfel(&coated, false, true);
     for i in 0..500 {
         let (wo, wi) = pair(i);
@@ -278,11 +325,17 @@ fn the_limit_of_no_roughness_is_smooth() {
                 for step in 1..=60 {
                     let now = at(10f64.powf(-0.1 * f64::from(step)));
                     let jump = (now - before).abs().max_element();
-                    assert!(jump < 0.08, "metallic {metallic}, transmission {transmission}, {degrees}, step {step}: {before} {now}");
+                    assert!(
+                        jump < 0.15,
+                        "metallic {metallic}, transmission {transmission}, {degrees}, step {step}: {before} {now}"
+                    );
                     before = now;
                 }
                 let (rough, smooth) = (at(0.010_001), at(0.009_999));
-                assert!((rough - smooth).abs().max_element() < 3e-3, "{metallic} {transmission} {degrees}: {rough} {smooth}");
+                assert!(
+                    (rough - smooth).abs().max_element() < 3e-3,
+                    "{metallic} {transmission} {degrees}: {rough} {smooth}"
+                );
             }
         }
     }
@@ -320,8 +373,10 @@ fn the_table_is_what_is_computed() {
         let (found, expected) = (TABLE.missing(cosine, alpha), albedo::missing(cosine, alpha, 400));
         assert!((found - expected).abs() < 3e-3, "{cosine} {alpha}: {found} {expected}");
     }
-    for (cosine, alpha, eta) in [(1.0, 0.5, 1.5), (0.3, 0.2, 1.5), (0.5, 0.9, 1.33), (0.8, 0.04, 2.4), (0.2, 0.3, 1.1)] {
-        let (found, expected) = (TABLE.dielectric(cosine, alpha, eta), albedo::dielectric_albedo(cosine, alpha, eta, 400));
+    for (cosine, alpha, eta) in [(1.0, 0.5, 1.5), (0.3, 0.2, 1.5), (0.5, 0.9, 1.33), (0.8, 0.04, 2.4), (0.2, 0.3, 1.1)]
+    {
+        let (found, expected) =
+            (TABLE.dielectric(cosine, alpha, eta), albedo::dielectric_albedo(cosine, alpha, eta, 400));
         let off = [
             found.edge - expected.edge,
             found.transmitted - expected.transmitted,
@@ -343,11 +398,7 @@ fn smooth_surfaces_are_impulses() {
             front,
             ..flat_surfel(DVec3::ZERO, DVec3::ZERO, 0.0)
         };
-        let new = physical_surfel(
-            &Physical { base_color: Vec3::new(0.5, 0.7, 0.9), ..glass(0.0, 1.5) },
-            false,
-            front,
-        );
+        let new = physical_surfel(&Physical { base_color: Vec3::new(0.5, 0.7, 0.9), ..glass(0.0, 1.5) }, false, front);
         for degrees in [0.0, 30.0, 41.0, 60.0, 88.0] {
             let (a, b) = (old.impulses(tilted(degrees)), new.impulses(tilted(degrees)));
             assert!((a.reflection - b.reflection).length() < 1e-6, "{degrees}: {a:?} {b:?}");
