@@ -25,7 +25,7 @@ void coat(Surfel s, Material material, vec3 wo, vec3 wi, out vec3 lambert, out v
 vec4 bsdf_and_pdf(Surfel s, Material material, vec3 wo, vec3 wi) {
     float cosine = dot(s.shading_normal, wi);
     if (is_physical(material)) {
-        bool both = ROUGH_TRANSMISSION && s.lobes.shares.z > 0.0;
+        bool both = scatters_through(s.lobes);
         if (dot(s.geometric_normal, wi) * cosine <= 0.0 || (!both && cosine < 0.0)) return vec4(0.0);
         vec4 f = physical_value_and_pdf(s.lobes, vec3(dot(s.lobes.x, wi), dot(s.lobes.y, wi), cosine));
         float sides = both ? 0.5 : 1.0;
@@ -68,7 +68,7 @@ vec3 bsdf_direction(Surfel s, Material material, vec3 wo, vec2 u, float choice) 
             return wi.x * s.lobes.x + wi.y * s.lobes.y + wi.z * s.shading_normal;
         }
         // Half of them from below, if light from there is scattered.
-        bool below = ROUGH_TRANSMISSION && s.lobes.shares.z > 0.0 && choice < 0.5;
+        bool below = scatters_through(s.lobes) && choice < 0.5;
         vec3 wi = DIRECTIONS == DIRECTIONS_UNIFORM ? uniform_hemisphere(u) : cosine_hemisphere(u);
         return from_frame(below ? -s.shading_normal : s.shading_normal, wi);
     }

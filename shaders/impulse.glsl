@@ -36,7 +36,7 @@ Impulses impulses(Surfel s, Material material, vec3 wo) {
         // Microfacets may let through what the surface as a whole would not.
         i.transmitted = transmitted == vec3(0.0) ? vec3(0.0) : l.impulse_transmission;
         float impulse = mean(i.reflected + i.transmitted);
-        float other = mean4(s.lobes.shares);
+        float other = scattered_albedo(s.lobes);
         if (impulse > 0.0) {
             if (other == 0.0) i.probability = 1.0;
             else i.probability = material.impulse_probability != BY_ALBEDOS ? material.impulse_probability : impulse / (impulse + other);

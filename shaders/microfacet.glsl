@@ -34,10 +34,13 @@ vec3 visible_normal(vec2 a, vec3 wo, vec2 u) {
     return normalize(vec3(h.xy * a, h.z));
 }
 
+// The width of a distribution that is the same all around with the same mean square.
+float mean_width(vec2 a) { return a.x == a.y ? a.x : sqrt(0.5 * dot(a, a)); }
+
 // The width of a distribution that is the same all around, of which about as much is missing towards wo.
 float round_width(vec2 a, vec3 wo) {
     if (a.x == a.y) return a.x;
-    return sqrt(0.5 * dot(a, a)) * max(sqrt(sqrt(max(1.0 - wo.x * wo.x, 0.0))), LEAST_ROUND);
+    return mean_width(a) * max(sqrt(sqrt(max(1.0 - wo.x * wo.x, 0.0))), LEAST_ROUND);
 }
 
 // Microfacets that reflect wi into wo, both above.
@@ -67,10 +70,4 @@ Microfacet microfacet_refraction(vec2 a, vec3 wo, vec3 wi, float eta) {
 vec3 microfacet_reflected(vec2 a, vec3 wo, vec2 u) {
     vec3 wi = reflect_direction(wo, visible_normal(a, wo, u));
     return wi.z > 0.0 ? wi : vec3(0.0);
-}
-
-// A direction from which they refract light into wo; zero if all is reflected there, or if it would be above.
-vec3 microfacet_refracted(vec2 a, vec3 wo, float eta, vec2 u) {
-    vec3 wi = refract_direction(wo, visible_normal(a, wo, u), eta);
-    return wi.z < 0.0 ? wi : vec3(0.0);
 }

@@ -4,7 +4,8 @@ const float LEAST_ALPHA = 1e-4;     // narrower microfacets are impulses
 const float COAT_INDEX = 1.5;
 const float LEAST_SHARE = 1e-6;     // what is divided by
 const float LEAST_COSINE = 1e-6;
-const float LEAST_THROUGH = 0.02;   // share of paths that go through rough glass from inside, of those that may
+const float NARROW = 0.04;          // up to this width what microfacets send to each other is added to their reflectance, ...
+const float WIDE = 0.25;            // ... and from this one on it is a lobe of its own
 
 // Numbers along the axes of the tables (src/scene/albedo_table.rs), which src/gpu/pack/physical.rs has in `physical`.
 const int ROUGH = 32;
@@ -59,13 +60,14 @@ struct Lobes {
     vec3 many;                      // colour of what the dielectric reflects more than once
     float passed;                   // by the coat
     vec3 diffuse;
-    vec3 again;                     // what of later reflections is added to the reflectance of microfacets
+    vec3 multiple;                  // of the lobe of later reflections, but for what is missing at wi
+    vec3 again;                     // what of them is added to the reflectance of microfacets instead
     float reflected;
     vec3 transmitted;
     bool straight;                  // what is transmitted is an impulse
     vec3 impulse_reflection;
     vec3 impulse_transmission;
-    vec4 shares;                    // albedos, about: the body, microfacets, what they transmit, coat
+    vec3 shares;                    // albedos, about: cosine lobes, microfacets, coat
 };
 
 vec4 physical_texel(int index) { return uintBitsToFloat(texelFetch(physical, index)); }
@@ -259,7 +261,8 @@ vec3 normal_albedo(Physical p) {
     return coat + (1.0 - coat) * base;
 }
 
-float mean4(vec4 v) { return v.x + v.y + v.z + v.w; }
+// Of what is scattered, about.
+float scattered_albedo(Lobes l) { return l.shares.x + l.shares.y + l.shares.z; }
 
 // The lobes of a surface about a normal towards wo; `tangent` in the world, `front`: on the outward side.
 Lobes physical_lobes(Physical p, vec3 normal, vec3 tangent, bool front, vec3 wo) {
@@ -280,8 +283,8 @@ Lobes physical_lobes(Physical p, vec3 normal, vec3 tangent, bool front, vec3 wo)
     bool impulse = is_smooth(p);
     vec2 w = widths(p);
     l.widths = vec2(w.x, max(w.y, LEAST_ALPHA));
-    l.alpha = impulse ? 0.0 : ANISOTROPY ? round_width(l.widths, l.wo) : w.x;
-    float lost = impulse ? 0.0 : missing(cosine, l.alpha);
+    l.alpha = impulse ? 0.0 : ANISOTROPY ? mean_width(l.widths) : w.x;
+    float lost = impulse ? 0.0 : missing(cosine, ANISOTROPY ? round_width(l.widths, l.wo) : w.x);
     float lost_average = impulse ? 0.0 : missing_average(l.alpha);
 
     bool body = ROUGH_TRANSMISSION && p.body != 0u;
@@ -309,7 +312,11 @@ Lobes physical_lobes(Physical p, vec3 normal, vec3 tangent, bool front, vec3 wo)
     l.diffuse = l.inside ? body_albedo / PI : body_albedo / (PI * max(1.0 - dielectric_albedo_average(l, lost_average), LEAST_SHARE));
     vec3 many = l.inside ? vec3(0.0) : l.many;
     vec3 metal_many = multiple_colour(metal_average(p), lost_average);
-    l.again = lost / (1.0 - lost) * mix(many, metal_many, p.metallic);
+    vec3 later = lost * mix(many, metal_many, p.metallic);
+    float wide = clamp((l.alpha - NARROW) / (WIDE - NARROW), 0.0, 1.0);
+    vec3 widely = l.passed * wide * later;
+    l.multiple = wide > 0.0 ? widely / (PI * lost_average) : vec3(0.0);
+    l.again = (1.0 - wide) * later / (1.0 - lost);
     l.reflected = 1.0;
     l.transmitted = vec3(0.0);
     l.straight = true;
@@ -317,8 +324,7 @@ Lobes physical_lobes(Physical p, vec3 normal, vec3 tangent, bool front, vec3 wo)
     if (ROUGH_TRANSMISSION) {
         vec4 share = dielectric_share(int(p.rows), cosine, l.alpha);
         if (l.inside) l.reflected = impulse ? transmission : transmission / ((1.0 - lost) * share.z);
-        // Rough glass lets something through beyond the critical angle, too.
-        through = insulator * transmission * p.base * max(entered, l.inside && !impulse ? LEAST_THROUGH : 0.0);
+        through = insulator * transmission * p.base * entered;
         // What is hardly bent is hardly spread.
         l.straight = impulse || (body && w.x * (index - 1.0) < LEAST_ALPHA);
         if (!l.straight) {
@@ -331,7 +337,8 @@ Lobes physical_lobes(Physical p, vec3 normal, vec3 tangent, bool front, vec3 wo)
     vec3 mirrored = l.passed * mix(reflects, (1.0 - lost) * metal(p, cosine) + lost * metal_many, p.metallic);
     l.impulse_reflection = (impulse ? mirrored : vec3(0.0)) + (coat_smooth ? coat : 0.0);
     l.impulse_transmission = l.straight ? through : vec3(0.0);
-    l.shares = vec4(mean(body_albedo), impulse ? 0.0 : mean(mirrored), l.straight ? 0.0 : mean(through), coat_smooth ? 0.0 : coat);
+    float facets = (impulse ? 0.0 : mean(mirrored - widely)) + (l.straight ? 0.0 : mean(through));
+    l.shares = vec3(mean(body_albedo + widely), facets, coat_smooth ? 0.0 : coat);
     return l;
 }
 
@@ -341,52 +348,71 @@ float bend(Lobes l) { return ROUGH_TRANSMISSION && l.p.body != 0u ? l.eta : 1.0;
 // Whether light goes through unscattered, from some side.
 bool is_clear(Lobes l) { return ROUGH_TRANSMISSION && l.straight && (1.0 - l.p.metallic) * transmits(l.p) * l.p.base != vec3(0.0); }
 
+// Whether light from below is scattered here.
+bool scatters_through(Lobes l) { return ROUGH_TRANSMISSION && l.transmitted != vec3(0.0); }
+
+// Colours of what a microfacet that is seen at a cosine reflects and lets through.
+void facet(Lobes l, float cosine, out vec3 reflects, out vec3 transmits) {
+    vec3 once = mix(l.reflected * dielectric_reflectance(l, cosine), metal(l.p, cosine), l.p.metallic);
+    reflects = l.passed * (once + l.again);
+    transmits = vec3(0.0);
+    if (scatters_through(l)) transmits = l.p.body != 0u ? l.transmitted * (1.0 - fresnel(l.eta, min(cosine, 1.0))) : l.transmitted;
+}
+
+// The probability with which a path that such a microfacet was chosen for is reflected.
+float reflected_share(vec3 reflects, vec3 transmits) {
+    float through = mean(transmits);
+    float mirrored = mean(reflects);
+    return through > 0.0 ? mirrored / (mirrored + through) : 1.0;
+}
+
 // The scattering function without the cosine and without the factor 1 / eta^2 of what is refracted, in rgb; w: the density of physical_direction. `wi` is in
 // the surface's frame.
 vec4 physical_value_and_pdf(Lobes l, vec3 wi) {
-    float all = mean4(l.shares);
+    float all = scattered_albedo(l);
     if (all == 0.0 || wi.z == 0.0) return vec4(0.0);
+    vec3 reflects, transmits;
     if (wi.z < 0.0) {
-        if (!ROUGH_TRANSMISSION || l.shares.z == 0.0) return vec4(0.0);
-        if (l.p.body == 0u) {
-            Microfacet sheet = microfacet_reflection(l.widths, l.wo, vec3(wi.xy, -wi.z));
-            return vec4(l.transmitted * sheet.value, l.shares.z / all * sheet.pdf);
-        }
-        Microfacet facet = microfacet_refraction(l.widths, l.wo, wi, l.eta);
-        float f = fresnel(l.eta, min(facet.cosine, 1.0));
-        return vec4(l.transmitted * ((1.0 - f) * facet.value), l.shares.z / all * facet.pdf);
+        if (!scatters_through(l)) return vec4(0.0);
+        Microfacet through = l.p.body != 0u ? microfacet_refraction(l.widths, l.wo, wi, l.eta)
+                                            : microfacet_reflection(l.widths, l.wo, vec3(wi.xy, -wi.z));
+        facet(l, through.cosine, reflects, transmits);
+        return vec4(transmits * through.value, l.shares.y * (1.0 - reflected_share(reflects, transmits)) / all * through.pdf);
     }
+    float lost = 0.0;
+    if (l.alpha > 0.0 && (l.multiple != vec3(0.0) || l.diffuse != vec3(0.0))) lost = missing(min(wi.z, 1.0), l.alpha);
     vec3 value = l.diffuse;
-    if (!l.inside && value != vec3(0.0)) {
-        float cosine = min(wi.z, 1.0);
-        value *= 1.0 - dielectric_albedo(l, cosine, l.alpha > 0.0 ? missing(cosine, l.alpha) : 0.0);
-    }
+    if (!l.inside && value != vec3(0.0)) value *= 1.0 - dielectric_albedo(l, min(wi.z, 1.0), lost);
     float pdf = l.shares.x * wi.z * (1.0 / PI);
     if (l.alpha > 0.0) {
-        Microfacet facet = microfacet_reflection(l.widths, l.wo, wi);
-        vec3 once = mix(l.reflected * dielectric_reflectance(l, facet.cosine), metal(l.p, facet.cosine), l.p.metallic);
-        value += l.passed * facet.value * (once + l.again);
-        pdf += l.shares.y * facet.pdf;
+        Microfacet mirror = microfacet_reflection(l.widths, l.wo, wi);
+        facet(l, mirror.cosine, reflects, transmits);
+        value += mirror.value * reflects + l.multiple * lost;
+        pdf += l.shares.y * reflected_share(reflects, transmits) * mirror.pdf;
     }
-    if (CLEARCOATS && l.shares.w > 0.0) {
+    if (CLEARCOATS && l.shares.z > 0.0) {
         float alpha = l.p.clearcoat_roughness * l.p.clearcoat_roughness;
-        Microfacet facet = microfacet_reflection(vec2(alpha), l.wo, wi);
+        Microfacet coat = microfacet_reflection(vec2(alpha), l.wo, wi);
         float absent = missing(min(l.wo.z, 1.0), alpha);
         float again = coat_multiple(alpha) * absent / (1.0 - absent);
-        value += l.p.clearcoat * (fresnel(COAT_INDEX, min(facet.cosine, 1.0)) + again) * facet.value;
-        pdf += l.shares.w * facet.pdf;
+        value += l.p.clearcoat * (fresnel(COAT_INDEX, min(coat.cosine, 1.0)) + again) * coat.value;
+        pdf += l.shares.z * coat.pdf;
     }
     return vec4(value, pdf / all);
 }
 
 // A direction in the surface's frame; `choice` in [0, 1) picks the lobe. Zero where the lobe sends nothing.
 vec3 physical_direction(Lobes l, vec2 u, float choice) {
-    float at = choice * mean4(l.shares);
+    float at = choice * scattered_albedo(l);
     if (at < l.shares.x) return cosine_hemisphere(u);
-    if (at < l.shares.x + l.shares.y) return microfacet_reflected(l.widths, l.wo, u);
-    if (ROUGH_TRANSMISSION && at < l.shares.x + l.shares.y + l.shares.z) {
-        if (l.p.body != 0u) return microfacet_refracted(l.widths, l.wo, l.eta, u);
-        return microfacet_reflected(l.widths, l.wo, u) * vec3(1.0, 1.0, -1.0);
+    if (!CLEARCOATS || at < l.shares.x + l.shares.y) {
+        vec3 h = visible_normal(l.widths, l.wo, u);
+        vec3 reflects, transmits;
+        facet(l, dot(l.wo, h), reflects, transmits);
+        vec3 wi = reflect_direction(l.wo, h);
+        if (!ROUGH_TRANSMISSION || at - l.shares.x < l.shares.y * reflected_share(reflects, transmits)) return wi.z > 0.0 ? wi : vec3(0.0);
+        wi = l.p.body != 0u ? refract_direction(l.wo, h, l.eta) : vec3(wi.xy, -wi.z);
+        return wi.z < 0.0 ? wi : vec3(0.0);
     }
     return microfacet_reflected(vec2(l.p.clearcoat_roughness * l.p.clearcoat_roughness), l.wo, u);
 }

@@ -9,7 +9,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 /// In place of a width of 0, where the albedo depends on the cosine over the width alone.
-const NARROW: f64 = 1e-4;
+const NARROWEST: f64 = 1e-4;
 /// In place of a cosine of 0.
 const GRAZING: f64 = 1e-6;
 
@@ -88,11 +88,11 @@ pub fn albedo_table(n: u32) -> AlbedoTable {
     let axis = |i: usize, numbers: usize| i as f64 / (numbers - 1) as f64;
     let alpha_of = |i: usize, numbers: usize| axis(i, numbers).powi(2);
     let lost = (0..ROUGH * STEEP).into_par_iter().map(|k| {
-        let alpha = alpha_of(k / STEEP, ROUGH).max(NARROW);
+        let alpha = alpha_of(k / STEEP, ROUGH).max(NARROWEST);
         missing(cosine_of_steepness(axis(k % STEEP, STEEP), alpha), alpha, n).sqrt()
     });
     let mut table = AlbedoTable { missing: lost.collect(), missing_average: vec![], dielectric: vec![] };
-    let narrow = |i: usize| alpha_of(i, ROUGH).max(NARROW);
+    let narrow = |i: usize| alpha_of(i, ROUGH).max(NARROWEST);
     let mean = |i: usize| average(|cosine| table.missing(cosine, narrow(i))) / narrow(i).powi(2);
     table.missing_average = (0..ROUGH).map(mean).collect();
     let rows = (0..INDICES * ROUGHNESSES * ROW).into_par_iter().map(|k| {

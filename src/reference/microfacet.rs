@@ -2,7 +2,7 @@
 //! Refraction through Rough Surfaces", 2007) with Smith's masking (Heitz, "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs",
 //! JCGT 3(2), 2014). Directions are in the surface's frame, its normal +z; `wo` is above it.
 
-use super::fresnel::{reflect, refract};
+use super::fresnel::reflect;
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
@@ -61,14 +61,18 @@ impl Ggx {
         DVec3::new(h.x * self.x, h.y * self.y, h.z).normalize()
     }
 
-    /// The width of a distribution that is the same all around, of which about as much is missing towards `wo`: the root of the mean square, less where the view grazes
+    /// The width of a distribution that is the same all around with the same mean square.
+    pub fn mean_width(&self) -> f64 {
+        if self.x == self.y { self.x } else { (0.5 * (self.x * self.x + self.y * self.y)).sqrt() }
+    }
+
+    /// The width of a distribution that is the same all around, of which about as much is missing towards `wo`: the mean one, less where the view grazes
     /// along the rougher axis, x. Of what is missing this is off by up to a twentieth of all light, mostly to less.
     pub fn round(&self, wo: DVec3) -> f64 {
         if self.x == self.y {
             return self.x;
         }
-        let mean = (0.5 * (self.x * self.x + self.y * self.y)).sqrt();
-        mean * (1.0 - wo.x * wo.x).max(0.0).sqrt().sqrt().max(LEAST_ROUND)
+        self.mean_width() * (1.0 - wo.x * wo.x).max(0.0).sqrt().sqrt().max(LEAST_ROUND)
     }
 
     /// Microfacets that reflect `wi` into `wo`, both above; masking and shadowing are correlated by height.
@@ -98,11 +102,5 @@ impl Ggx {
     pub fn reflected(&self, wo: DVec3, [u, v]: [f64; 2]) -> DVec3 {
         let wi = reflect(wo, self.visible_normal(wo, u, v));
         if wi.z > 0.0 { wi } else { DVec3::ZERO }
-    }
-
-    /// A direction from which microfacets refract light into `wo`; zero if all is reflected there, or if it would be above.
-    pub fn refracted(&self, wo: DVec3, eta: f64, [u, v]: [f64; 2]) -> DVec3 {
-        let wi = refract(wo, self.visible_normal(wo, u, v), eta);
-        wi.filter(|wi| wi.z < 0.0).unwrap_or(DVec3::ZERO)
     }
 }

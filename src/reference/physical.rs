@@ -2,12 +2,12 @@
 //!
 //! From above: a coat, of which the rest of the light gets what it lets through; then a metal beside a dielectric, both of the same microfacets;
 //! below the dielectric what it lets through is partly scattered by a Lambertian body, partly goes on. What microfacets send to each
-//! other is not lost: their lobe is scaled by it (Turquin, "Practical Multiple Scattering Compensation for Microfacet Models", 2019), with the colour of later
-//! reflections (Kulla and Conty, "Revisiting Physically Based Shading at Imageworks", 2017); what goes through is scaled to all that is not reflected. (A lobe
-//! of its own, as Kulla and Conty have it, would be reciprocal, but of little roughness it lies near the horizon alone, where no path looks for it.)
+//! other is not lost: of wide microfacets a lobe of its own gives it back (Kulla and Conty, "Revisiting Physically Based Shading at Imageworks", 2017), which of
+//! narrow ones would lie near the horizon alone, where no path looks for it: they are scaled (Turquin, "Practical Multiple Scattering Compensation for Microfacet
+//! Models", 2019). Both have the colour of later reflections. What goes through is scaled to all that is not reflected.
 //!
 //! Light may go either way where it is scattered by the body, and by microfacets but for that scale: one direction is worth more than the other by the ratio of
-//! what is missing at them, which is at most what is added. The coat takes its share by `wo` alone, and so does what is transmitted.
+//! what is missing at them, at most. The coat takes its share by `wo` alone, and so does what is transmitted.
 
 use super::fresnel::{fresnel, fresnel_conductor, reflect, refract};
 use super::microfacet::{Ggx, Microfacet};
@@ -21,8 +21,10 @@ use std::f64::consts::PI;
 pub const COAT_INDEX: f64 = 1.5;
 /// A share that is divided by is at least this.
 pub const LEAST_SHARE: f64 = 1e-6;
-/// Inside of rough glass the share of paths that go through is at least this, of those that may.
-pub const LEAST_THROUGH: f64 = 0.02;
+/// Of a lobe of microfacets up to this width what they send to each other is added to their reflectance, ...
+pub const NARROW: f64 = 0.04;
+/// ... and from this one on it is a lobe of its own; in between both.
+pub const WIDE: f64 = 0.25;
 /// A cosine to the normal is at least this.
 pub const LEAST_COSINE: f64 = 1e-6;
 
@@ -199,8 +201,13 @@ impl Dielectric {
         self.f0 + (self.f90 - self.f0) * ((f - self.normal) / (1.0 - self.normal))
     }
 
-    /// The share that the surface reflects in all, seen at a cosine; from inside only about.
-    fn albedo(&self, cosine: f64) -> DVec3 {
+    /// What is missing at a cosine.
+    fn missing(&self, cosine: f64) -> f64 {
+        if self.alpha == 0.0 { 0.0 } else { TABLE.missing(cosine, self.alpha) }
+    }
+
+    /// The share that the surface reflects in all, seen at a cosine, where this much is missing; from inside only about.
+    fn albedo(&self, cosine: f64, missing: f64) -> DVec3 {
         if self.alpha == 0.0 {
             return self.reflectance(cosine);
         }
@@ -208,7 +215,6 @@ impl Dielectric {
         if self.inside {
             return DVec3::splat(1.0 - share.transmitted_inside / share.inside);
         }
-        let missing = TABLE.missing(cosine, self.alpha);
         (1.0 - missing) * (self.f0 + (self.f90 - self.f0) * share.edge) + missing * self.multiple
     }
 
@@ -241,7 +247,9 @@ pub struct Lobes {
     passed: f64,
     /// Of Lambert's lobe, but for what is reflected of `wi`.
     diffuse: DVec3,
-    /// What of later reflections is added to the reflectance of microfacets.
+    /// Of the lobe of later reflections, but for what is missing at `wi`.
+    multiple: DVec3,
+    /// What of later reflections is added to the reflectance of microfacets instead.
     again: DVec3,
     /// Factor to what microfacets of the dielectric reflect.
     reflected: f64,
@@ -252,8 +260,8 @@ pub struct Lobes {
     /// Albedos of impulses.
     impulse_reflection: DVec3,
     impulse_transmission: DVec3,
-    /// Albedos, about, of what is scattered: the body, microfacets, what they transmit, coat.
-    shares: [f64; 4],
+    /// Albedos, about, of what is scattered: cosine lobes, microfacets, coat.
+    shares: [f64; 3],
 }
 
 /// The average of the channels.
@@ -272,8 +280,8 @@ impl Lobes {
         let [along, across] = p.widths();
         let ggx = Ggx { x: along, y: across.max(LEAST_ALPHA) };
         let smooth = p.is_smooth();
-        let alpha = if smooth { 0.0 } else { ggx.round(wo) };
-        let missing = if smooth { 0.0 } else { TABLE.missing(cosine, alpha) };
+        let alpha = if smooth { 0.0 } else { ggx.mean_width() };
+        let missing = if smooth { 0.0 } else { TABLE.missing(cosine, ggx.round(wo)) };
         let missing_average = if smooth { 0.0 } else { TABLE.missing_average(alpha) };
 
         let inside = p.body && !front;
@@ -284,7 +292,7 @@ impl Lobes {
         let eta = if inside { 1.0 / index } else { index };
         let normal_reflectance = fresnel(index, 1.0);
         let dielectric = Dielectric { eta, index, inside, f0, f90, normal: normal_reflectance, alpha, multiple };
-        let reflects = dielectric.albedo(cosine);
+        let reflects = dielectric.albedo(cosine, missing);
         let share = TABLE.dielectric(cosine, alpha, index);
 
         let coated = p.clearcoat > 0.0 && (front || !p.body);
@@ -304,12 +312,11 @@ impl Lobes {
         };
         let metal_multiple = multiple_colour(p.metal_average(), missing_average);
         let dielectric_multiple = if inside { DVec3::ZERO } else { multiple };
-        let again = missing * (p.metallic * metal_multiple + (1.0 - p.metallic) * dielectric_multiple);
+        let multiple = missing * (p.metallic * metal_multiple + (1.0 - p.metallic) * dielectric_multiple);
+        let wide = ((alpha - NARROW) / (WIDE - NARROW)).clamp(0.0, 1.0);
         let of_boundary = if inside { transmission } else { 1.0 };
         let reflected = if inside && !smooth { of_boundary / ((1.0 - missing) * share.inside) } else { of_boundary };
-        // Rough glass lets something through beyond the critical angle, too.
-        let least = if inside && !smooth { LEAST_THROUGH } else { 0.0 };
-        let through = insulator * transmission * p.base * entered.max(DVec3::splat(least));
+        let through = insulator * transmission * p.base * entered;
         // What is hardly bent is hardly spread.
         let straight = smooth || (p.body && along * (index - 1.0) < LEAST_ALPHA);
         let transmitted = if straight {
@@ -323,6 +330,7 @@ impl Lobes {
         };
         let metal = (1.0 - missing) * p.metal(cosine) + missing * metal_multiple;
         let mirrored = passed * (p.metallic * metal + (1.0 - p.metallic) * of_boundary * reflects);
+        let widely = passed * wide * multiple;
         let coat_colour = DVec3::splat(coat);
         let impulse = |colour: DVec3, is: bool| if is { colour } else { DVec3::ZERO };
         let scattered = |colour: DVec3, is: bool| mean(impulse(colour, is));
@@ -335,16 +343,16 @@ impl Lobes {
             dielectric,
             passed,
             diffuse,
-            again: again / (1.0 - missing),
+            multiple: if wide > 0.0 { widely / (PI * missing_average) } else { DVec3::ZERO },
+            again: (1.0 - wide) * multiple / (1.0 - missing),
             reflected,
             transmitted,
             straight,
             impulse_reflection: impulse(mirrored, smooth) + impulse(coat_colour, coat_smooth),
             impulse_transmission: impulse(through, straight),
             shares: [
-                mean(body),
-                scattered(mirrored, !smooth),
-                scattered(through, !straight),
+                mean(body + widely),
+                scattered(mirrored - widely, !smooth) + scattered(through, !straight),
                 scattered(coat_colour, !coat_smooth),
             ],
         }
@@ -379,36 +387,39 @@ impl Lobes {
     /// The scattering function without the cosine, per steradian, and the density with which [`Lobes::direction`] gives `wi`, which is in the world.
     pub fn value_and_pdf(&self, wi: DVec3) -> (DVec3, f64) {
         let wi = self.to_world.transpose() * wi;
-        let [cosine_share, microfacet_share, through_share, coat_share] = self.shares;
+        let [cosine_share, facet_share, coat_share] = self.shares;
         let all = self.scattered_albedo();
         if all == 0.0 || wi.z == 0.0 {
             return (DVec3::ZERO, 0.0);
         }
         if wi.z < 0.0 {
-            if through_share == 0.0 {
+            if !self.scatters_through() {
                 return (DVec3::ZERO, 0.0);
             }
-            let (through, passed, eta2) = if self.surface.body {
-                let facet = self.ggx.refraction(self.wo, wi, self.dielectric.eta);
-                let f = fresnel(self.dielectric.eta, facet.cosine.min(1.0));
-                (facet, 1.0 - f, self.dielectric.eta * self.dielectric.eta)
+            let (through, eta2) = if self.surface.body {
+                let eta = self.dielectric.eta;
+                (self.ggx.refraction(self.wo, wi, eta), eta * eta)
             } else {
-                (self.ggx.reflection(self.wo, DVec3::new(wi.x, wi.y, -wi.z)), 1.0, 1.0)
+                (self.ggx.reflection(self.wo, DVec3::new(wi.x, wi.y, -wi.z)), 1.0)
             };
-            return (self.transmitted * passed * through.value / eta2, through_share / all * through.pdf);
+            let [_, transmits] = self.facet(through.cosine);
+            return (
+                transmits * through.value / eta2,
+                facet_share * (1.0 - self.reflected_share(through.cosine)) / all * through.pdf,
+            );
         }
         let cosine = wi.z.min(1.0);
+        let missing = self.dielectric.missing(cosine);
         let mut value = self.diffuse;
         if !self.dielectric.inside {
-            value *= DVec3::ONE - self.dielectric.albedo(cosine);
+            value *= DVec3::ONE - self.dielectric.albedo(cosine, missing);
         }
         let mut pdf = cosine_share * wi.z / PI;
         if self.dielectric.alpha > 0.0 {
             let facet = self.ggx.reflection(self.wo, wi);
-            let metal = self.surface.metallic * self.surface.metal(facet.cosine);
-            let dielectric = (1.0 - self.surface.metallic) * self.reflected * self.dielectric.reflectance(facet.cosine);
-            value += self.passed * facet.value * (metal + dielectric + self.again);
-            pdf += microfacet_share * facet.pdf;
+            let [reflects, _] = self.facet(facet.cosine);
+            value += facet.value * reflects + self.multiple * missing;
+            pdf += facet_share * self.reflected_share(facet.cosine) * facet.pdf;
         }
         if coat_share > 0.0 {
             let Microfacet { value: once, pdf: density, cosine: to_facet } = self.coat_ggx.reflection(self.wo, wi);
@@ -423,27 +434,45 @@ impl Lobes {
 
     /// A direction, in the world: two numbers choose it within a lobe, which `lobe` chooses, all in [0, 1). Zero where the lobe sends nothing.
     pub fn direction(&self, u: [f64; 2], lobe: f64) -> DVec3 {
-        let [cosine, microfacets, through, _] = self.shares;
+        let [cosine, facets, _] = self.shares;
         let at = lobe * self.scattered_albedo();
         let wi = if at < cosine {
             cosine_hemisphere(DVec3::Z, u[0], u[1])
-        } else if at < cosine + microfacets {
-            self.ggx.reflected(self.wo, u)
-        } else if at < cosine + microfacets + through {
-            if self.surface.body {
-                self.ggx.refracted(self.wo, self.dielectric.eta, u)
+        } else if at < cosine + facets {
+            let h = self.ggx.visible_normal(self.wo, u[0], u[1]);
+            let mirrored = reflect(self.wo, h);
+            let (wi, side) = if (at - cosine) / facets < self.reflected_share(self.wo.dot(h)) {
+                (mirrored, 1.0)
+            } else if self.surface.body {
+                (refract(self.wo, h, self.dielectric.eta).unwrap_or(DVec3::ZERO), -1.0)
             } else {
-                self.ggx.reflected(self.wo, u) * DVec3::new(1.0, 1.0, -1.0)
-            }
+                (mirrored * DVec3::new(1.0, 1.0, -1.0), -1.0)
+            };
+            if wi.z * side > 0.0 { wi } else { DVec3::ZERO }
         } else {
             self.coat_ggx.reflected(self.wo, u)
         };
         self.to_world * wi
     }
 
+    /// Colours of what a microfacet that is seen at a cosine reflects and lets through.
+    fn facet(&self, cosine: f64) -> [DVec3; 2] {
+        let p = &self.surface;
+        let metal = p.metallic * p.metal(cosine);
+        let dielectric = (1.0 - p.metallic) * self.reflected * self.dielectric.reflectance(cosine);
+        let passes = if p.body { 1.0 - fresnel(self.dielectric.eta, cosine.min(1.0)) } else { 1.0 };
+        [self.passed * (metal + dielectric + self.again), self.transmitted * passes]
+    }
+
+    /// The probability with which a path that such a microfacet was chosen for is reflected.
+    fn reflected_share(&self, cosine: f64) -> f64 {
+        let [reflects, transmits] = self.facet(cosine).map(mean);
+        if transmits > 0.0 { reflects / (reflects + transmits) } else { 1.0 }
+    }
+
     /// Whether light from below is scattered here.
     pub fn scatters_through(&self) -> bool {
-        self.shares[2] > 0.0
+        self.transmitted != DVec3::ZERO
     }
 
     /// Where impulses go about the world's unit vector `normal`: reflected, and transmitted, which is zero if nothing is.

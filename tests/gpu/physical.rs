@@ -48,7 +48,13 @@ fn tolerance(surfel: &Surfel, wo: DVec3, wi: DVec3) -> f64 {
     let width = (p.roughness * p.roughness).max(1e-4);
     let narrow = if wi.z < 0.0 && p.body { (p.ior - 1.0).abs().min(1.0) } else { 1.0 };
     let coat = if p.clearcoat > 0.0 { (p.clearcoat_roughness * p.clearcoat_roughness).max(1e-4) } else { 1.0 };
-    5e-5 + 4e-6 / (width.min(coat) * narrow) + 1e-6 / wo.z.min(wi.z.abs()).max(1e-4)
+    // Near the critical angle of the microfacet what it lets through is the root of a small difference.
+    let eta = if p.body && !surfel.front { 1.0 / p.ior } else { p.ior };
+    let sum = if wi.z < 0.0 { wo + eta * wi } else { wo + wi };
+    let sine2 = 1.0 - wo.dot(sum.normalize_or_zero()).powi(2);
+    let critical = 1e-6 / (eta * eta - sine2).abs().max(1e-7);
+    let critical = if p.body && !surfel.front { critical } else { 0.0 };
+    5e-5 + critical + 1e-5 / (width.min(coat) * narrow) + 1e-6 / wo.z.min(wi.z.abs()).max(1e-4)
 }
 
 /// For every surface from both sides: values and densities at any pair of directions; and which way a path goes, with its weight and its density.

@@ -3,19 +3,20 @@
 use crate::common::directions::*;
 use crate::common::scenes::*;
 use crate::common::statistics::*;
-use glam::{DVec3, Vec3};
+use crate::transport::means;
+use glam::{Affine3A, DVec3, Vec3};
 use luminaire::reference::albedo;
 use luminaire::reference::bsdf::bsdf_pdf;
-use luminaire::reference::fresnel::fresnel;
+use luminaire::reference::fresnel::{fresnel, fresnel_conductor};
 use luminaire::reference::microfacet::Ggx;
 use luminaire::reference::scatter::scatter;
 use luminaire::reference::surfel::Surfel;
-use luminaire::reference::warp::{frame, uniform_hemisphere};
+use luminaire::reference::warp::uniform_hemisphere;
 use luminaire::sampling::{random4, uniform};
 use luminaire::scene::albedo_table::TABLE;
-use luminaire::scene::{Directions, Physical};
+use luminaire::scene::*;
 use rayon::prelude::*;
-use std::f64::consts::{LN_2, PI, TAU};
+use std::f64::consts::{LN_2, TAU};
 
 fn metal(roughness: f32) -> Physical {
     Physical { metallic: 1.0, roughness, ..Physical::default() }
@@ -52,7 +53,9 @@ fn kinds() -> Vec<(String, Surfel)> {
         let plastic = Physical { roughness, base_color: Vec3::new(0.9, 0.5, 0.1), ..Physical::default() };
         add(format!("metal {roughness}"), &metal(roughness), false, true);
         add(format!("plastic {roughness}"), &plastic, false, true);
-        add(format!("brushed {roughness}"), &Physical { anisotropy: 0.5, ..metal(roughness) }, false, true);
+        // Narrower ones are too narrow for cells.
+        let brushed = Physical { anisotropy: 0.5, ..metal(roughness.max(0.3)) };
+        add(format!("brushed {roughness}"), &brushed, false, true);
         for ior in [1.1, 1.5, 2.4] {
             add(format!("glass {roughness} {ior}"), &glass(roughness, ior), false, true);
             add(format!("glass {roughness} {ior} from inside"), &glass(roughness, ior), false, false);
@@ -68,7 +71,7 @@ fn kinds() -> Vec<(String, Surfel)> {
 /// Directions are chosen by the density that is claimed, cell by cell; what is not chosen goes nowhere.
 #[test]
 fn lobes_have_their_density() {
-    const N: u32 = 60_000;
+    const N: u32 = 40_000;
     let cases: Vec<_> = kinds()
         .into_iter()
         .flat_map(|(name, surfel)| [10.0, 50.0, 82.0].map(|at| (name.clone(), surfel, at)))
@@ -90,9 +93,9 @@ fn lobes_have_their_density() {
             let density = |side: f64| {
                 move |wi: DVec3| if wi.z * side > 0.0 { f64::from(N) * lobes.value_and_pdf(wi).1 } else { 0.0 }
             };
-            let mut expected = above.integrate_by::<8>(density(1.0));
+            let mut expected = above.integrate_by::<6>(density(1.0));
             let cells_above = expected.len();
-            expected.extend(below.integrate_by::<12>(density(-1.0)));
+            expected.extend(below.integrate_by::<10>(density(-1.0)));
             let mass = expected.iter().sum::<f64>() / f64::from(N);
             assert!(mass <= 1.0 + 2e-3, "{name} at {degrees}: a density of {mass}");
             expected.push((1.0 - mass).max(0.0) * f64::from(N));
@@ -141,7 +144,7 @@ fn scatter_gives_value_over_density() {
         // All ways to choose directions find the same.
         let wo = tilted(35.0);
         let mean = |directions| {
-            let weights = (0..40_000).map(|i| {
+            let weights = (0..10_000).map(|i| {
                 let scattered = scatter(&surfel, wo, directions, random_numbers(i));
                 scattered.weight.x * scattered.eta2
             });
@@ -168,7 +171,7 @@ fn white_rough_metal_is_white() {
         .par_iter()
         .flat_map_iter(|roughness| {
             [0.0, 20.0, 45.0, 60.0, 75.0, 85.0, 89.0, 89.9].map(|degrees| {
-                let albedo = albedo_of(&physical_surfel(&metal(*roughness), false, true), tilted(degrees), 40_000).x;
+                let albedo = albedo_of(&physical_surfel(&metal(*roughness), false, true), tilted(degrees), 8_000).x;
                 assert!((albedo - 1.0).abs() <= 5e-3, "roughness {roughness} at {degrees} degrees: {albedo}");
                 (albedo - 1.0).abs()
             })
@@ -198,7 +201,7 @@ fn white_surfaces_lose_and_gain_nothing() {
         .par_iter()
         .flat_map_iter(|(p, thin, front)| {
             [0.0, 45.0, 70.0, 85.0, 89.5].map(|degrees| {
-                let albedo = albedo_of(&physical_surfel(p, *thin, *front), tilted(degrees), 12_000).x;
+                let albedo = albedo_of(&physical_surfel(p, *thin, *front), tilted(degrees), 4_000).x;
                 let Physical { roughness, ior, transmission, metallic, .. } = p;
                 let what = format!(
                     "roughness {roughness}, index {ior}, transmission {transmission}, metallic {metallic}, thin {thin}, front {front}, at {degrees} \
@@ -245,7 +248,7 @@ fn coats_and_brushes_gain_nothing() {
         .par_iter()
         .flat_map_iter(|p| {
             [0.0, 60.0, 85.0].map(|degrees| {
-                let albedo = albedo_of(&physical_surfel(p, false, true), tilted(degrees), 8_000);
+                let albedo = albedo_of(&physical_surfel(p, false, true), tilted(degrees), 3_000);
                 // Numbers of the table are a little off, those for what is brushed more so.
                 let most = if p.anisotropy > 0.0 { 1.05 } else { 1.01 };
                 let (low, high) = (albedo.min_element(), albedo.max_element());
@@ -283,12 +286,15 @@ fn reciprocity_fails_by_no_more_than_is_said() {
         for i in 0..500 {
             let (wo, wi) = pair(i);
             let (there, back) = (surfel.bsdf(wo, wi), surfel.bsdf(wi, wo));
-            let missing = |w: DVec3| TABLE.missing(w.z, (p.roughness * p.roughness).max(p.anisotropy));
-            let bound = 1.0 / (1.0 - missing(wo).max(missing(wi)));
+            let width = p.roughness * p.roughness;
+            let ggx = Ggx { x: width + (1.0 - width) * p.anisotropy * p.anisotropy, y: width };
+            let missing = |w: DVec3| TABLE.missing(w.z, ggx.round(w));
+            // What is brushed goes by other widths at either direction.
+            let bound = if p.anisotropy > 0.0 { 1.3 } else { 1.0 / (1.0 - missing(wo).max(missing(wi))) };
             let ratio = (there / back).max(back / there).max_element();
             assert!(ratio <= bound * (1.0 + 1e-9), "{name}: {there} {back}, {ratio} above {bound}");
-            // A white metal's is the ratio of what is missing.
-            if p.metallic == 1.0 && p.anisotropy == 0.0 {
+            // A white metal's, if it is narrow, is the ratio of what is missing.
+            if p.metallic == 1.0 && p.roughness < 0.2 {
                 let expected = (1.0 - missing(wi)) / (1.0 - missing(wo));
                 assert!((there.x / back.x / expected - 1.0).abs() < 1e-6, "{name}: {there} {back} {expected}");
             }
@@ -319,7 +325,7 @@ fn the_limit_of_no_roughness_is_smooth() {
                         roughness: roughness as f32,
                         ..Physical::default()
                     };
-                    albedo_of(&physical_surfel(&p, false, true), tilted(degrees), 6_000)
+                    albedo_of(&physical_surfel(&p, false, true), tilted(degrees), 2_000)
                 };
                 let mut before = at(1.0);
                 for step in 1..=60 {
@@ -407,6 +413,115 @@ fn smooth_surfaces_are_impulses() {
         }
         assert!(!new.scatters());
     }
-    let (t, _) = frame(DVec3::Z);
-    assert!(t.is_finite() && PI > 3.0);
+}
+
+/// Light through a frosted pane and a rough body that absorbs is the same however it is looked for: by paths alone, by light sampling, by both, from either side of the
+/// surfaces, with the luminaires in a tree, and with paths that end by the surface's albedo.
+#[test]
+fn light_through_rough_glass_is_found_alike() {
+    let mut scene = empty(4, 4);
+    scene.sensor = pinhole(Vec3::new(0.0, 0.4, 3.0), Vec3::new(0.0, 0.4, 0.0), Vec3::Y, 40.0);
+    let physical = |p: Physical| Material { physical: Some(p), ..Material::default() };
+    let across = |y: f32, half: f32| quad(Vec3::new(-half, y, half), Vec3::X * 2.0 * half, Vec3::Z * -2.0 * half);
+    add(&mut scene, across(0.0, 2.0), matte(Vec3::splat(0.7)), Affine3A::IDENTITY);
+    let frosted = Physical { roughness: 0.6, transmission: 0.8, ..Physical::default() };
+    add(&mut scene, across(1.2, 1.5), Material { thin: true, ..physical(frosted) }, Affine3A::IDENTITY);
+    let body = Physical {
+        roughness: 0.6,
+        transmission: 1.0,
+        attenuation_color: Vec3::new(0.5, 0.7, 0.9),
+        attenuation_distance: 0.5,
+        clearcoat: 0.5,
+        clearcoat_roughness: 0.5,
+        ..Physical::default()
+    };
+    let place = Affine3A::from_translation(Vec3::new(0.3, 0.5, 0.2)) * Affine3A::from_scale(Vec3::splat(0.45));
+    add(&mut scene, icosphere(1), physical(body), place);
+    for x in [-0.8, 0.5] {
+        add(
+            &mut scene,
+            quad(Vec3::new(x, 1.7, 0.25), Vec3::X * 0.5, Vec3::Z * -0.5),
+            lamp(Vec3::splat(8.0)),
+            Affine3A::IDENTITY,
+        );
+    }
+    let mean = |estimator: Estimator, seed: u32| {
+        let mut scene = scene.clone();
+        scene.integrator = Integrator::Path(estimator);
+        scene.settings.seed = seed;
+        means(&scene, 2500)[0]
+    };
+    let base = Estimator::default();
+    let expected = mean(Estimator { light_choice: LightChoice::Power, ..base }, 1);
+    for (seed, estimator) in [
+        Estimator { light_choice: LightChoice::Tree, ..base },
+        Estimator { light_sampling: LightSampling::None, ..base },
+        Estimator { light_sampling: LightSampling::Direct, light_choice: LightChoice::Tree, ..base },
+        Estimator { directions: Directions::Uniform, ..base },
+        Estimator { directions: Directions::Cosine, ..base },
+        Estimator { extinction: Extinction::Surface, ..base },
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let found = mean(estimator, 2 + seed as u32);
+        println!("{found:?} for {expected:?}");
+        assert!(found.error < 0.05 * found.mean, "{estimator:?}: {found:?} is not sharp enough");
+        let p = same_mean(found, expected);
+        assert!(p >= SIGNIFICANCE, "{estimator:?}: {found:?} instead of {expected:?}, p = {p:.1e}");
+    }
+}
+
+/// Values and densities as Mitsuba 3.9.1 has them: `roughconductor` with GGX of widths 0.3 and 0.1, `roughdielectric` of width 0.2 and index 1.5, from outside
+/// and from inside. Its masking and shadowing are independent, and its densities have Fresnel's share; ours, which this test divides out, are not.
+#[test]
+fn microfacets_are_those_of_mitsuba() {
+    let direction = |theta: f64, phi: f64| {
+        let (theta, phi) = (theta.to_radians(), phi.to_radians());
+        DVec3::new(theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos())
+    };
+    let close =
+        |found: f64, expected: f64| assert!((found / expected - 1.0).abs() < 2e-5, "{found} instead of {expected}");
+    let ggx = Ggx { x: 0.3, y: 0.1 };
+    let [eta, k] = copper(0.0).conductor.expect("it is one").map(|v| v.as_dvec3());
+    for (o, i, value, pdf) in [
+        ([30.0, 10.0], [40.0, 170.0], DVec3::new(0.454131, 0.295836, 0.244193), 0.4845055639743805),
+        ([70.0, 0.0], [60.0, 200.0], DVec3::new(0.0427378, 0.028548, 0.0244544), 0.04782027378678322),
+        ([5.0, 40.0], [20.0, 100.0], DVec3::new(0.10487, 0.0683052, 0.0562306), 0.11018268764019012),
+    ] {
+        let (wo, wi) = (direction(o[0], o[1]), direction(i[0], i[1]));
+        let facet = ggx.reflection(wo, wi);
+        close(facet.pdf, pdf);
+        let (a, b) = (ggx.lambda(wo), ggx.lambda(wi));
+        let apart = (1.0 + a + b) / ((1.0 + a) * (1.0 + b));
+        let found = facet.value * apart * wi.z * fresnel_conductor([eta, k], facet.cosine);
+        (0..3).for_each(|channel| close(found[channel], value[channel]));
+    }
+    let ggx = Ggx { x: 0.2, y: 0.2 };
+    for (o, i, value, pdf) in [
+        ([30.0, 10.0], [160.0, 185.0], 17.7397, 39.967105865478516),
+        ([60.0, 0.0], [140.0, 190.0], 1.92448, 4.360351085662842),
+        ([30.0, 10.0], [35.0, 195.0], 0.084867, 0.08528111129999161),
+        ([150.0, 10.0], [20.0, 195.0], 0.257409, 0.11455539613962173),
+        ([155.0, 0.0], [50.0, 170.0], 2.1264, 0.9583023190498352),
+        ([150.0, 10.0], [145.0, 190.0], 0.13757, 0.13824108242988586),
+    ] {
+        let (mut wo, mut wi) = (direction(o[0], o[1]), direction(i[0], i[1]));
+        let mut eta = 1.5;
+        if wo.z < 0.0 {
+            (wo.z, wi.z, eta) = (-wo.z, -wi.z, 1.0 / eta);
+        }
+        if wi.z > 0.0 {
+            let facet = ggx.reflection(wo, wi);
+            let f = fresnel(eta, facet.cosine);
+            let (a, b) = (ggx.lambda(wo), ggx.lambda(wi));
+            close(f * facet.pdf, pdf);
+            close(f * facet.value * wi.z * (1.0 + a + b) / ((1.0 + a) * (1.0 + b)), value);
+        } else {
+            let facet = ggx.refraction(wo, wi, eta);
+            let through = 1.0 - fresnel(eta, facet.cosine);
+            close(through * facet.pdf, pdf);
+            close(through * facet.value * -wi.z / (eta * eta), value);
+        }
+    }
 }
