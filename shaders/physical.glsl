@@ -387,7 +387,8 @@ vec4 physical_value_and_pdf(Lobes l, vec3 wi) {
     if (l.alpha > 0.0) {
         Microfacet mirror = microfacet_reflection(l.widths, l.wo, wi);
         facet(l, mirror.cosine, reflects, transmits);
-        value += mirror.value * reflects + l.multiple * lost;
+        float absent = ANISOTROPY && l.multiple != vec3(0.0) ? missing(min(wi.z, 1.0), round_width(l.widths, wi)) : lost;
+        value += mirror.value * reflects + l.multiple * absent;
         pdf += l.shares.y * reflected_share(reflects, transmits) * mirror.pdf;
     }
     if (CLEARCOATS && l.shares.z > 0.0) {

@@ -9,7 +9,7 @@
 //! | Lighting Functions, Shadows & Attenuation, Area Luminaires | [`luminaire`]: `direct_light`; [`light_tree`]; [`environment`] |
 //! | Inefficient Integration, More Efficient Integration | [`bsdf`]: `bsdf_direction`, `bsdf_pdf`; [`warp`] |
 //! | Extinction | [`scatter`]: `scatter`, `survival` |
-//! | Impulse Reflection, Adding Transmission | [`impulse`]: `fresnel`, `refract`, `impulses` |
+//! | Impulse Reflection, Adding Transmission | [`fresnel`]: `fresnel`, `refract`; [`impulse`]: `impulses` |
 //! | Intersection Problems | [`intersect`], [`surfel`]: `offset_ray_origin` |
 //! | Sensor Modelling | [`sensor`]: `sensor_ray` |
 //! | (surfaces of real scenes) | [`physical`], [`microfacet`], [`albedo`] |

@@ -418,7 +418,8 @@ impl Lobes {
         if self.dielectric.alpha > 0.0 {
             let facet = self.ggx.reflection(self.wo, wi);
             let [reflects, _] = self.facet(facet.cosine);
-            value += facet.value * reflects + self.multiple * missing;
+            let absent = TABLE.missing(cosine, self.ggx.round(wi));
+            value += facet.value * reflects + self.multiple * absent;
             pdf += facet_share * self.reflected_share(facet.cosine) * facet.pdf;
         }
         if coat_share > 0.0 {

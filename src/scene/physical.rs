@@ -148,10 +148,10 @@ impl Physical {
     /// Whether the surface may be smooth somewhere, so that there is an impulse in place of its narrowest microfacets: a map may make it so.
     pub fn may_be_smooth(&self) -> bool {
         let smooth = |roughness: f32, map: bool| map || f64::from(roughness).powi(2) < LEAST_ALPHA;
-        (smooth(self.roughness, self.maps.roughness.is_some()) && (self.anisotropy == 0.0 || self.maps.anisotropy.is_some()))
+        smooth(self.roughness, self.maps.roughness.is_some())
             || (self.clearcoat > 0.0 && smooth(self.clearcoat_roughness, self.maps.clearcoat_roughness.is_some()))
-            // What is not bent goes straight on, however rough.
-            || (self.transmission > 0.0 && f64::from((self.ior - 1.0).abs()) < LEAST_ALPHA.sqrt())
+            // What is hardly bent goes straight on.
+            || (self.transmission > 0.0 && f64::from(self.roughness).powi(2) * f64::from(self.ior - 1.0) < LEAST_ALPHA)
     }
 
     /// What is asked for and not traced: names for a warning, in the words of the extensions of glTF.

@@ -156,6 +156,8 @@ fn white_balls_under_a_white_sky_are_white() {
         (Physical { metallic: 1.0, roughness: 1.0, ..Physical::default() }, 64),
         (Physical { roughness: 0.3, ..Physical::default() }, 64),
         (Physical { roughness: 0.4, transmission: 1.0, ..Physical::default() }, 128),
+        // Hardly bent: what goes through is an impulse, what is reflected is none.
+        (Physical { roughness: 0.05, ior: 1.03, transmission: 1.0, ..Physical::default() }, 16),
         (Physical { roughness: 0.8, transmission: 0.5, metallic: 0.3, ..Physical::default() }, 256),
     ] {
         let mut scene = empty(12, 12);
