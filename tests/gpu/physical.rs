@@ -73,7 +73,7 @@ fn surfaces_are_those_of_the_reference() {
         for (index, (p, thin)) in surfaces.iter().enumerate() {
             for (degrees, front) in [(3.0, true), (50.0, true), (83.0, true), (20.0, false), (65.0, false)] {
                 let surfel = physical_surfel(p, *thin, front);
-                let material = first + index as u32 | if front { 0 } else { INSIDE };
+                let material = (first + index as u32) | if front { 0 } else { INSIDE };
                 let view = tilted(degrees).as_vec3();
                 let wo = view.as_dvec3();
                 let name = format!("{p:?}, thin {thin}, front {front}, at {degrees} degrees");
