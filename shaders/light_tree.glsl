@@ -41,7 +41,8 @@ vec4 within_cone(vec4 cone, vec4 cosine, vec4 sine) {
     return mix(step(both, cosine + CONE_COSINE_MARGIN), vec4(1.0), all_around);
 }
 
-// How much light of each child of a node may arrive at a surface with the normal `n`, relative to each other; 0: surely none.
+// How much light of each child of a node may arrive at a surface with the normal `n`, relative to each other; 0: surely none. A normal of length 2 says
+// that light from both sides counts (`receiver`).
 vec4 light_importances(vec3 p, vec3 n, uint node) {
     vec4 x = light_texel(node) - p.x;
     vec4 y = light_texel(node + 1u) - p.y;
@@ -60,7 +61,9 @@ vec4 light_importances(vec3 p, vec3 n, uint node) {
     vec4 near = max(distance2, radius * radius);
     float nearest = min(min(near.x, near.y), min(near.z, near.w));
     vec4 sine = min(radius * inverse, MOST_SINE);
-    vec4 incident = facing((n.x * x + n.y * y + n.z * z) * inverse, sine + HORIZON_MARGIN);
+    vec4 incident = (n.x * x + n.y * y + n.z * z) * inverse;
+    if (ROUGH_TRANSMISSION && dot(n, n) > 2.0) incident = 0.5 * abs(incident);
+    incident = facing(incident, sine + HORIZON_MARGIN);
     // Two numbers from -1 to 1 in 16 bits each.
     vec4 along = vec4(axis_xy << 16 >> 16) * x + vec4(axis_xy >> 16) * y + vec4(axis_z_spread << 16 >> 16) * z;
     vec4 cosine = along * inverse * (-1.0 / 32767.0);

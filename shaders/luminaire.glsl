@@ -100,7 +100,7 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, vec3 throughput, uvec4 r
     uint chosen;
     float probability = 0.0;
     if (!tree) chosen = choose_luminaire(random.z);
-    else if (!choose_by_tree(s.position, s.shading_normal, random.z, random.w, chosen, probability)) return vec3(0.0);
+    else if (!choose_by_tree(s.position, receiver(s, material), random.z, random.w, chosen, probability)) return vec3(0.0);
     Luminaire light = load_luminaire(chosen);
     if (tree) {
         light.probability = probability;
@@ -166,11 +166,12 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, vec3 throughput, uvec4 r
     }
     if (area && light.one_sided != 0.0 && dot(light.normal, wi) > 0.0) return vec3(0.0);
     vec4 f = bsdf_and_pdf(s, material, wo, wi);
-    vec3 scattered = f.rgb * dot(s.shading_normal, wi);
+    vec3 scattered = f.rgb * cosine_at(s, wi);
     vec3 radiance = scattered * incident;
+    if (ROUGH_TRANSMISSION) radiance /= dilution(s, material, wi);
     if (radiance == vec3(0.0)) return vec3(0.0);
     if (LIGHT_SAMPLING == LIGHT_MIS && (area || surroundings || sun)) {
-        radiance *= power_heuristic(density, path_pdf(f.w * rest, throughput * scattered, material));
+        radiance *= power_heuristic(density, path_pdf(f.w * rest, throughput * scattered, s, material));
     }
 
     if (area && (TEXTURES || HOLES)) {
@@ -200,6 +201,10 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, vec3 throughput, uvec4 r
             t_max = 1.0 - 9.5367432e-7;
         }
         direction = target - origin;
+    }
+    if (VOLUMES) {
+        vec3 absorption = inner_absorption(s, material, wi);
+        if (absorption != vec3(0.0)) radiance *= absorbed(absorption, infinite || surroundings ? 1e30 : length(direction) * t_max);
     }
     rays += uvec2(1u);
     return occluded(origin, direction, t_max, salt) ? vec3(0.0) : radiance;

@@ -12,6 +12,9 @@ layout(local_size_x = 64) in;
 #include "warp.glsl"
 #include "texture.glsl"
 #include "intersect.glsl"
+#include "fresnel.glsl"
+#include "microfacet.glsl"
+#include "physical.glsl"
 #include "surfel.glsl"
 #include "impulse.glsl"
 #include "bsdf.glsl"
@@ -67,9 +70,22 @@ void write_hit(uint id, bool found, Hit hit) {
     results[2u * id + 1u] = uvec4(floatBitsToUint(hit.barycentric), 0u, 0u);
 }
 
-// A surface at the origin whose normal is +z, seen from outside.
+// The bit of a material that says that its surface is seen from inside.
+const uint INSIDE = 0x80000000u;
+
+// A surface at the origin whose normal is +z; the first texture coordinate grows along +x.
 Surfel upward(uint material) {
-    return Surfel(vec3(0.0), vec3(0.0), vec3(0.0, 0.0, 1.0), vec3(0.0, 0.0, 1.0), material, true, vec2(0.0), vec3(1.0));
+    Surfel s;
+    s.position = vec3(0.0);
+    s.position_error = vec3(0.0);
+    s.geometric_normal = vec3(0.0, 0.0, 1.0);
+    s.shading_normal = vec3(0.0, 0.0, 1.0);
+    s.material = material & ~INSIDE;
+    s.front = (material & INSIDE) == 0u;
+    s.uv = vec2(0.0);
+    s.colour = vec3(1.0);
+    s.tangent = vec3(1.0, 0.0, 0.0);
+    return s;
 }
 
 void main() {
@@ -103,7 +119,8 @@ void main() {
     case BSDF: {
         Surfel s = upward(x.w);
         vec3 wo = uintBitsToFloat(x.xyz);
-        Material material = load_material(x.w);
+        Material material = load_material(s.material);
+        if (PHYSICAL) find_lobes(s, material, wo);
         vec4 f = bsdf_and_pdf(s, material, wo, uintBitsToFloat(y.xyz));
         f.w *= 1.0 - impulses(s, material, wo).probability;
         result = floatBitsToUint(f);
@@ -118,7 +135,8 @@ void main() {
     case SCATTER: {
         Surfel s = upward(x.w);
         vec3 wo = uintBitsToFloat(x.xyz);
-        Material material = load_material(x.w);
+        Material material = load_material(s.material);
+        if (PHYSICAL) find_lobes(s, material, wo);
         Scattering next = scatter(s, material, impulses(s, material, wo), wo, y);
         results[2u * id] = floatBitsToUint(vec4(next.wi, next.pdf));
         results[2u * id + 1u] = floatBitsToUint(vec4(next.weight, next.eta2));

@@ -22,18 +22,23 @@ layout(constant_id = 17) const bool LIGHT_TREE = true;         // luminaires are
 layout(constant_id = 18) const bool SPOTS = true;              // some point luminaire shines into a cone
 layout(constant_id = 19) const bool PROFILES = true;           // some point luminaire has measured intensities
 layout(constant_id = 20) const bool SUNS = true;               // some luminaire is a disc at infinity
-layout(constant_id = 21) const bool ORTHOGRAPHIC = false;
-layout(constant_id = 22) const bool SOBOL = false;
+layout(constant_id = 21) const bool PHYSICAL = true;           // some material is a metallic-roughness surface
+layout(constant_id = 22) const bool ROUGH_TRANSMISSION = true; // some of these let light through
+layout(constant_id = 23) const bool VOLUMES = true;            // some of these are bodies that absorb
+layout(constant_id = 24) const bool CLEARCOATS = true;         // some of these have a coat
+layout(constant_id = 25) const bool ANISOTROPY = true;         // some of these are brushed
+layout(constant_id = 26) const bool ORTHOGRAPHIC = false;
+layout(constant_id = 27) const bool SOBOL = false;
 
 // The integrator's choices (src/scene/estimator.rs).
-layout(constant_id = 23) const bool SIMPLE = false;            // the simple ray tracer instead of the path tracer
-layout(constant_id = 24) const uint LIGHT_SAMPLING = 2u;
-layout(constant_id = 25) const bool SOLID_ANGLE = true;        // near triangles are sampled by solid angle
-layout(constant_id = 26) const uint DIRECTIONS = 2u;
-layout(constant_id = 27) const uint EXTINCTION = 3u;
-layout(constant_id = 28) const bool THRESHOLD = false;         // paths of small albedo end
+layout(constant_id = 28) const bool SIMPLE = false;            // the simple ray tracer instead of the path tracer
+layout(constant_id = 29) const uint LIGHT_SAMPLING = 2u;
+layout(constant_id = 30) const bool SOLID_ANGLE = true;        // near triangles are sampled by solid angle
+layout(constant_id = 31) const uint DIRECTIONS = 2u;
+layout(constant_id = 32) const uint EXTINCTION = 3u;
+layout(constant_id = 33) const bool THRESHOLD = false;         // paths of small albedo end
 
-layout(constant_id = 29) const bool TRANSPARENT = false;       // the camera does not see where its rays escape to, and they are counted
+layout(constant_id = 34) const bool TRANSPARENT = false;       // the camera does not see where its rays escape to, and they are counted
 
 const uint LIGHT_NONE = 0u;
 const uint LIGHT_DIRECT = 1u;
@@ -110,7 +115,7 @@ struct Material {
     uint emission_map;
     uint opacity_map;             // its alpha multiplies the opacity
     uint one_sided;               // 1 if only the outward side emits
-    uint thin;                    // 1 if it is a sheet whose two sides are one surface
+    uint kind;                    // 1 if it is a sheet whose two sides are one surface, plus twice its texel in `physical`, if it has one there
     float coat_transmittance;     // where COATS: of even light from outside, what reaches the base
 };
 // What impulse_probability is where the albedos say how probable an impulse is.
@@ -161,6 +166,9 @@ layout(set = 0, binding = 14) uniform usamplerBuffer colours;
 
 // The light tree (src/gpu/pack/light_tree.rs): a header, what is chosen beside the tree, nodes, paths.
 layout(set = 0, binding = 15) uniform usamplerBuffer light_tree;
+
+// Metallic-roughness surfaces and their tables (src/gpu/pack/physical.rs), where PHYSICAL.
+layout(set = 0, binding = 16) uniform usamplerBuffer physical;
 
 // No index.
 const uint NONE = 0xffffffffu;

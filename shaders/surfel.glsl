@@ -9,6 +9,8 @@ struct Surfel {
     bool front;               // wo is on the outward side
     vec2 uv;                  // where TEXTURES
     vec3 colour;              // of the vertices, where VERTEX_COLOURS
+    vec3 tangent;             // in which the first texture coordinate grows, where ANISOTROPY
+    Lobes lobes;              // towards wo, where PHYSICAL and the material is such a surface
 };
 
 // Bounds on the error of a position; src/gpu/pack/luminaire.rs takes them over a whole triangle.
@@ -38,6 +40,14 @@ vec3 vertex_colour(uint triangle, vec2 barycentric) {
     return (1.0 - barycentric.x - barycentric.y) * a + barycentric.x * b + barycentric.y * c;
 }
 
+// The direction in the plane of a triangle with these edges in which the first texture coordinate grows; 0 if there is none.
+vec3 direction_of_u(uint triangle, vec3 ab, vec3 ac) {
+    vec4 corners = uintBitsToFloat(texelFetch(uvs, int(2u * triangle)));
+    vec2 b = corners.zw - corners.xy;
+    vec2 c = uintBitsToFloat(texelFetch(uvs, int(2u * triangle + 1u)).xy) - corners.xy;
+    return (ab * c.y - ac * b.y) * sign(b.x * c.y - b.y * c.x);
+}
+
 Surfel surfel(Hit hit, vec3 wo) {
     Surfel s;
     Triangle triangle = load_triangle(hit.triangle);
@@ -65,6 +75,7 @@ Surfel surfel(Hit hit, vec3 wo) {
     s.material = triangle.material;
     if (TEXTURES) s.uv = texture_coordinates(hit.triangle, w);
     if (VERTEX_COLOURS) s.colour = vertex_colour(hit.triangle, w);
+    if (ANISOTROPY) s.tangent = direction_of_u(hit.triangle, b - a, c - a);
 
     vec3 n = vec3(0.0);
     if (VERTEX_NORMALS) {
@@ -102,6 +113,7 @@ Surfel surfel(Hit hit, vec3 wo) {
         s.position_error = across / dot(scaled, scaled) * abs(scaled)
             + gamma(TO_WORLD_ROUNDINGS) * (row_abs_dot(to_world, abs(p)) + abs(translation(to_world)));
         if (VERTEX_NORMALS) n = normal_to_world(to_object, n);
+        if (ANISOTROPY) s.tangent = row_dot(to_world, s.tangent);
         uint material = object_place(hit.object).material;
         if (material != NONE) s.material = material;
     }
@@ -118,6 +130,48 @@ Surfel surfel(Hit hit, vec3 wo) {
         if (dot(n, wo) > 0.0) s.shading_normal = n;
     }
     return s;
+}
+
+// The lobes of a metallic-roughness surface towards wo.
+void find_lobes(inout Surfel s, Material material, vec3 wo) {
+    if (!is_physical(material)) return;
+    Physical p = physical_at(material, s.uv, s.colour);
+    vec3 tangent = vec3(0.0);
+    if (ANISOTROPY) {
+        vec3 outward = s.front ? s.shading_normal : -s.shading_normal;
+        tangent = s.tangent - outward * dot(outward, s.tangent);
+        float size = largest(abs(tangent));
+        if (size > 0.0) tangent = normalize(tangent / size);
+        vec2 sc = sin_cos_turns(p.anisotropy_rotation);
+        tangent = sc.y * tangent + sc.x * cross(outward, tangent);
+        s.tangent = tangent;
+    }
+    s.lobes = physical_lobes(p, s.shading_normal, tangent, s.front, wo);
+}
+
+// What a choice of luminaires has to know of the receiver: the shading normal, of length 2 if light from both of its sides is scattered.
+vec3 receiver(Surfel s, Material material) {
+    bool both = ROUGH_TRANSMISSION && is_physical(material) && scatters_through(s.lobes.p);
+    return both ? 2.0 * s.shading_normal : s.shading_normal;
+}
+
+// What the body absorbs into which a ray leaves in this direction.
+vec3 inner_absorption(Surfel s, Material material, vec3 direction) {
+    bool inwards = VOLUMES && is_physical(material) && (dot(s.geometric_normal, direction) < 0.0) == s.front;
+    return inwards && s.lobes.p.body != 0u ? s.lobes.p.absorption : vec3(0.0);
+}
+
+// The cosine by which light from a direction counts.
+float cosine_at(Surfel s, vec3 wi) {
+    float cosine = dot(s.shading_normal, wi);
+    return ROUGH_TRANSMISSION ? abs(cosine) : cosine;
+}
+
+// By how much more what comes from wi is diluted than shares of energy are: eta^2 of what is refracted.
+float dilution(Surfel s, Material material, vec3 wi) {
+    if (!ROUGH_TRANSMISSION || !is_physical(material) || dot(s.shading_normal, wi) > 0.0) return 1.0;
+    float eta = bend(s.lobes);
+    return eta * eta;
 }
 
 // The material with its textures, and with the colours of the vertices.

@@ -64,14 +64,15 @@
 //! | 11 | Albedo Termination: a threshold | `path.glsl`: `THRESHOLD` | `reference::estimators` (furnaces) | `extinction` |
 //! | 12 | Area Luminaires: of any shape, by area or solid angle, with MIS | `luminaire.glsl`: `direct_light`, `is_near`; `warp.glsl`: `spherical_triangle` | `gpu::pictures::irradiance_of_a_triangle_lamp`, `reference::light` | `lamps`, `many-lights` |
 //! | 13 | Impulse Reflection: 60 % impulse, 40 % other | `impulse.glsl`: `impulses`; `scatter.glsl`: `scatter`; [`reference::impulse`] | `reference::impulses` | `mirror` |
-//! | 14 | Adding Transmission: refraction, BSDF over the sphere | `impulse.glsl`: `fresnel`, `refract_direction`; [`reference::impulse`] | `reference::impulses`, `gpu::features` ("glass") | `glass`, `furnace/glass` |
+//! | 14 | Adding Transmission: refraction, BSDF over the sphere | `fresnel.glsl`: `fresnel`, `refract_direction`; [`reference::fresnel`], [`reference::impulse`] | `reference::impulses`, `gpu::features` ("glass") | `glass`, `furnace/glass` |
 //! | 15 | Sensor Modelling: pixel filter, lens, projection, shift | `sensor.glsl`: `sensor_ray`; [`reference::sensor`] | `reference::sensor`, `gpu::sensor` | `lens`, `lens/orthographic` |
 //! | 16 | Assumptions: escaping light disappears, steady state, RGB | `path.glsl`: `extend_path`; [`scene::Environment`] where a scene asks for one | `reference::environment`, `gpu::features` ("open air") | `furnace`, `environment` |
 //!
 //! Beyond the slides: multiple importance sampling (`luminaire.glsl`: `emission_weight`, `power_heuristic`), a tree over many luminaires
 //! (`light_tree.glsl`: `choose_by_tree`; [`scene::light_tree`], [`reference::light_tree`]; `gpu::light_tree`, `reference::light_tree`), spots, suns and
 //! photometric lamps (`luminaire.glsl`: `spot_falloff`, `sunlight`; `sun.glsl`, `profile.glsl`; [`reference::sun`], [`reference::profile`]; `reference::directed`,
-//! `gpu::densities`), textures and holes (`texture.glsl`), an environment (`environment.glsl`), Owen-scrambled Sobol points ([`sampling::sobol`]). Where a line of a slide is wrong taken
+//! `gpu::densities`), textures and holes (`texture.glsl`), an environment (`environment.glsl`), Owen-scrambled Sobol points ([`sampling::sobol`]), metallic-roughness surfaces with rough glass
+//! (`physical.glsl`, `microfacet.glsl`; [`scene::Physical`], [`reference::physical`]; `gpu::physical`, `reference::physical`). Where a line of a slide is wrong taken
 //! literally (the half vector, missing densities, emission counted twice), what it means is computed; the extinction without
 //! re-weighting and the threshold stay selectable ([`scene::PRESETS`]), because their errors are instructive.
 

@@ -224,10 +224,72 @@ shared! {
         opacity_map: u32,
         /// 1 if only the outward side emits.
         one_sided: u32,
-        /// 1 if it is a sheet whose two sides are one surface.
-        thin: u32,
+        /// 1 if it is a sheet whose two sides are one surface, plus twice the texel of its [`Physical`], if it has one.
+        kind: u32,
         /// Of even light from outside, what a coat lets through to the base.
         coat_transmittance: f32,
+    }
+}
+
+shared! {
+    /// A metallic-roughness surface (binding 16): ten texels, which `load_physical` reads.
+    Physical {
+        /// Base colour.
+        base: [f32; 3],
+        /// Share of metal.
+        metallic: f32,
+        /// Tint of the dielectric's reflection.
+        specular_color: [f32; 3],
+        /// Its strength.
+        specular: f32,
+        /// Natural logarithm of what is absorbed in a unit of length inside.
+        absorption: [f32; 3],
+        /// Perceptual roughness.
+        roughness: f32,
+        /// A metal's index of refraction.
+        conductor_eta: [f32; 3],
+        /// Strength of the anisotropy.
+        anisotropy: f32,
+        /// A metal's extinction coefficient.
+        conductor_k: [f32; 3],
+        /// In turns, from the tangent.
+        anisotropy_rotation: f32,
+        /// A metal's reflectance, averaged over directions.
+        conductor_average: [f32; 3],
+        /// Index of refraction; 0: infinite.
+        ior: f32,
+        /// Share of what enters that goes through.
+        transmission: f32,
+        /// Strength of the coat.
+        clearcoat: f32,
+        /// Its perceptual roughness.
+        clearcoat_roughness: f32,
+        /// Texel of the table of its index.
+        rows: u32,
+        /// A texture, or [`NONE`].
+        base_map: u32,
+        /// Four times a texture, and a channel; or [`NONE`]. So are the next ones, but for those of colours.
+        metallic_map: u32,
+        /// The same.
+        roughness_map: u32,
+        /// A texture.
+        anisotropy_map: u32,
+        /// Texture and channel.
+        specular_map: u32,
+        /// A texture.
+        specular_color_map: u32,
+        /// Texture and channel.
+        transmission_map: u32,
+        /// The same.
+        clearcoat_map: u32,
+        /// The same.
+        clearcoat_roughness_map: u32,
+        /// 1 if it has an index and an extinction coefficient in place of the base colour.
+        conductor: u32,
+        /// 1 if somebody may be inside.
+        body: u32,
+        /// To a multiple of 16 bytes.
+        padding: u32,
     }
 }
 

@@ -33,7 +33,7 @@ impl Budget {
     pub(super) fn of(scene: &Scene, table: &LuminaireTable, ray_query: bool, model: &KernelModel) -> Self {
         let features = &model.features;
         let triangles: u64 = scene.meshes.iter().map(|mesh| mesh.triangles.len() as u64).sum();
-        let textured = features.textures || features.holes;
+        let textured = features.textures || features.holes || features.anisotropy;
         let triangle = size_of::<layout::Triangle>()
             + if features.vertex_normals { size_of::<layout::VertexNormals>() } else { 0 }
             + if textured { size_of::<layout::TriangleUvs>() } else { 0 }

@@ -68,6 +68,9 @@ pub enum Function {
     Intensity = 23,
 }
 
+/// The bit of a material in the arguments of [`Function::Bsdf`] and [`Function::Scatter`] that says that the surface is seen from inside.
+pub const INSIDE: u32 = 1 << 31;
+
 /// Arguments or results of one call.
 pub type Call = [[u32; 4]; 2];
 

@@ -2,9 +2,9 @@
 
 use crate::scene::{
     AreaSampling, Directions, Environment, Extinction, Integrator, LightSampling, Luminaire, LuminaireTable, Material,
-    Projection, SampledLuminaire, Sampler, Scene,
+    Physical, Projection, SampledLuminaire, Sampler, Scene,
 };
-use glam::{Affine2, Affine3A, Vec3};
+use glam::{Affine2, Affine3A, DVec3, Vec3};
 
 macro_rules! features {
     ($($(#[$doc:meta])* $name:ident: $text:literal,)*) => {
@@ -78,6 +78,16 @@ features! {
     profiles: "photometric profiles",
     /// Some luminaire is a disc at infinity.
     suns: "sun discs",
+    /// Some material is a metallic-roughness surface.
+    physical: "metallic-roughness",
+    /// Some of these let light through.
+    rough_transmission: "rough transmission",
+    /// Some of these are bodies that absorb.
+    volumes: "absorbing bodies",
+    /// Some of these have a coat.
+    clearcoats: "clearcoats",
+    /// Some of these are brushed.
+    anisotropy: "anisotropy",
 }
 
 /// The kernel that runs: the scene's features, and the choices of its integrator.
@@ -105,6 +115,8 @@ impl KernelModel {
     pub(crate) fn with(scene: &Scene, table: &LuminaireTable) -> Self {
         let any = |kind: fn(&SampledLuminaire) -> bool| table.entries.iter().any(kind);
         let material = |uses: fn(&Material) -> bool| scene.materials.iter().any(uses);
+        let physical =
+            |uses: fn(&Physical) -> bool| scene.materials.iter().any(|m| m.physical.as_ref().is_some_and(uses));
         let features = Features {
             glossy: material(|m| m.glossy != Vec3::ZERO),
             vertex_normals: scene.meshes.iter().any(|m| !m.normals.is_empty()),
@@ -117,9 +129,13 @@ impl KernelModel {
             area_luminaires: any(|l| matches!(l, SampledLuminaire::Area(_))),
             environment: scene.environment.as_ref().is_some_and(Environment::emits),
             impulses: material(Material::has_impulse),
-            dielectrics: material(|m| m.has_impulse() && m.eta.is_some()),
+            dielectrics: material(|m| match m.physical {
+                Some(_) => m.transmits(),
+                None => m.has_impulse() && m.eta.is_some(),
+            }),
             textures: material(|m| {
-                [m.maps.ambient, m.maps.lambert, m.maps.glossy, m.maps.emission].iter().any(Option::is_some)
+                let own = [m.maps.ambient, m.maps.lambert, m.maps.glossy, m.maps.emission];
+                own.iter().any(Option::is_some) || m.physical.as_ref().is_some_and(|physical| physical.maps.any())
             }),
             holes: material(Material::has_holes),
             thin: material(Material::is_sheet),
@@ -132,6 +148,11 @@ impl KernelModel {
             spots: any(|l| matches!(l, SampledLuminaire::Impulse(Luminaire::Spot { .. }))),
             profiles: any(|l| matches!(l, SampledLuminaire::Impulse(Luminaire::Photometric { .. }))),
             suns: any(|l| matches!(l, SampledLuminaire::Sun(_))),
+            physical: material(|m| m.physical.is_some()),
+            rough_transmission: material(|m| m.physical.is_some() && m.transmits()),
+            volumes: material(|m| m.is_body() && m.physical.as_ref().is_some_and(|p| p.absorption() != DVec3::ZERO)),
+            clearcoats: physical(|p| p.clearcoat > 0.0),
+            anisotropy: physical(|p| p.anisotropy > 0.0),
         };
         KernelModel {
             features,

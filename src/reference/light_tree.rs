@@ -86,9 +86,11 @@ fn within_cone(cone: f64, cosine: f64, sine: f64) -> bool {
     sine >= 1.0 || cone + other <= 0.0 || cosine + CONE_COSINE_MARGIN >= both
 }
 
-/// How much light of each child of a node may arrive at a surface with this normal, relative to each other; 0: surely none.
+/// How much light of each child of a node may arrive at a surface with this normal, relative to each other; 0: surely none. A normal of length 2 says that
+/// light from both sides counts ([`Surfel::receiver`]).
 pub fn light_importances(position: DVec3, normal: DVec3, node: &LightNode) -> [f64; CHILDREN] {
     let children: [_; CHILDREN] = std::array::from_fn(|number| node.child(number));
+    let both = normal.length_squared() > 2.0;
     let to_child = children.map(|child| child.center.as_dvec3() - position);
     let distance2 = to_child.map(|d| d.length_squared().max(LEAST_DISTANCE2));
     let near: [f64; CHILDREN] =
@@ -98,7 +100,8 @@ pub fn light_importances(position: DVec3, normal: DVec3, node: &LightNode) -> [f
         let child = &children[i];
         let inverse = distance2[i].sqrt().recip();
         let sine = (f64::from(child.radius) * inverse).min(MOST_SINE);
-        let incident = facing(normal.dot(to_child[i]) * inverse, sine + HORIZON_MARGIN);
+        let incident = normal.dot(to_child[i]) * inverse;
+        let incident = facing(if both { 0.5 * incident.abs() } else { incident }, sine + HORIZON_MARGIN);
         let mut cosine = -child.axis.dot(to_child[i]) * inverse;
         if child.spread.two_sided {
             cosine = cosine.abs();
@@ -162,7 +165,7 @@ impl Reference {
         let mut node = &tree.nodes[0];
         loop {
             numbers.renew();
-            let cuts = light_cuts(light_importances(surfel.position, surfel.shading_normal, node), numbers.width)?;
+            let cuts = light_cuts(light_importances(surfel.position, surfel.receiver(), node), numbers.width)?;
             let child = cuts.iter().filter(|cut| numbers.number >= **cut).count();
             numbers.take(cuts, child);
             let link = node.link[child];
@@ -191,8 +194,7 @@ impl Reference {
         let mut node = &tree.nodes[0];
         loop {
             numbers.renew();
-            let Some(cuts) = light_cuts(light_importances(from.position, from.shading_normal, node), numbers.width)
-            else {
+            let Some(cuts) = light_cuts(light_importances(from.position, from.receiver(), node), numbers.width) else {
                 return 0.0;
             };
             let child = (path & 3) as usize;

@@ -318,7 +318,7 @@ impl Reference {
             return None;
         }
         let (at, light) = self.sample_luminaire(&surfel, random)?;
-        let cosine = surfel.shading_normal.dot(light.wi).max(0.0);
+        let cosine = surfel.cosine(light.wi);
         let radiance = mean(vertex.throughput * surfel.bsdf(wo, light.wi) * cosine * light.irradiance);
         (radiance > 0.0 && radiance.is_finite()).then_some((radiance, at, light))
     }
@@ -332,7 +332,9 @@ impl Reference {
                 return Some((surfaces, passed));
             };
             let surfel = self.surfel(&hit, -light.direction.normalize());
-            passed *= mean(surfel.transmission);
+            // Rough glass scatters what it lets through: that is found from there.
+            let physical = surfel.lobes(-light.direction.normalize());
+            passed *= mean(physical.map_or(surfel.transmission, |lobes| lobes.impulses()[1]));
             if passed == 0.0 {
                 return None;
             }

@@ -56,7 +56,7 @@ impl Reference {
             return DVec3::ZERO;
         }
         let Some((_, light)) = self.sample_luminaire(surfel, random) else { return DVec3::ZERO };
-        let cosine = surfel.shading_normal.dot(light.wi).max(0.0);
+        let cosine = surfel.cosine(light.wi);
         let estimator = self.scene.integrator.estimator();
         let weight = match (light.pdf, estimator.light_sampling) {
             (Some(pdf), LightSampling::Mis) => {
@@ -64,7 +64,10 @@ impl Reference {
             }
             _ => 1.0,
         };
-        let radiance = weight * surfel.bsdf(wo, light.wi) * cosine * light.irradiance;
+        let mut radiance = weight * surfel.bsdf(wo, light.wi) * cosine * light.irradiance;
+        if let Some(passed) = surfel.inner_absorption(light.wi) {
+            radiance *= passed.passed(light.direction.length() * light.t_max);
+        }
         if radiance == DVec3::ZERO {
             return DVec3::ZERO;
         }

@@ -9,17 +9,20 @@
 //! | Lighting Functions, Shadows & Attenuation, Area Luminaires | [`luminaire`]: `direct_light`; [`sun`]; [`profile`]; [`light_tree`]; [`environment`] |
 //! | Inefficient Integration, More Efficient Integration | [`bsdf`]: `bsdf_direction`, `bsdf_pdf`; [`warp`] |
 //! | Extinction | [`scatter`]: `scatter`, `survival` |
-//! | Impulse Reflection, Adding Transmission | [`impulse`]: `fresnel`, `refract`, `impulses` |
+//! | Impulse Reflection, Adding Transmission | [`fresnel`]: `fresnel`, `refract`; [`impulse`]: `impulses` |
 //! | Intersection Problems | [`intersect`], [`surfel`]: `offset_ray_origin` |
 //! | Sensor Modelling | [`sensor`]: `sensor_ray` |
+//! | (surfaces of real scenes) | [`physical`], [`microfacet`], [`albedo`] |
 //! | (what no estimator of the lecture finds) | [`lost_light`] |
 //! | (how bright a picture is to be shown) | `AutoExposure` |
 //! | Path Trace Function, A Simple Raytracer, Albedo Termination | [`path`]: `radiance` |
 
+pub mod albedo;
 mod aov;
 mod auto_exposure;
 pub mod bsdf;
 pub mod environment;
+pub mod fresnel;
 pub mod hit;
 pub mod impulse;
 mod instance;
@@ -27,7 +30,10 @@ pub mod intersect;
 pub mod light_tree;
 pub mod lost_light;
 pub mod luminaire;
+pub mod microfacet;
 pub mod path;
+pub mod physical;
+mod physical_surface;
 mod prepared_scene;
 pub mod profile;
 mod rounding;

@@ -1,6 +1,7 @@
 //! The surface element: everything that shading needs to know about a point on a surface.
 
-use super::hit::{Hit, interpolate, texture_coordinates, vertex_colour};
+use super::hit::{Hit, direction_of_u, interpolate, texture_coordinates, vertex_colour};
+use super::physical::{Lobes, PhysicalSurface};
 use super::prepared_scene::Reference;
 use super::rounding::gamma;
 use crate::scene::outward;
@@ -45,6 +46,8 @@ pub struct Surfel {
     pub coat_transmittance: f64,
     /// Probability of going on by an impulse, if the material states one.
     pub impulse_probability: Option<f64>,
+    /// The metallic-roughness surface that scatters in place of all these albedos, if it is one.
+    pub physical: Option<PhysicalSurface>,
 }
 
 impl Reference {
@@ -76,6 +79,7 @@ impl Reference {
             }
         }
         let material = self.scene.material_of(object, triangle);
+        let outward_normal = if front { shading_normal } else { -shading_normal };
         let uv = texture_coordinates(mesh, triangle, weights);
         let map = |map: Option<u32>| self.map(map, uv).truncate();
         let colour = vertex_colour(mesh, triangle, weights);
@@ -102,6 +106,12 @@ impl Reference {
             thin: material.is_sheet(),
             coat_transmittance: self.coats[object.material.unwrap_or(triangle.material) as usize],
             impulse_probability: material.impulse_probability.map(f64::from),
+            physical: self.physical_surface(
+                material,
+                uv,
+                colour,
+                [direction_of_u(mesh, triangle, corners), outward_normal],
+            ),
         }
     }
 }
@@ -110,6 +120,38 @@ impl Surfel {
     /// Whether a direction is on the side of `wo`, of the triangle and of the shading normal's plane.
     pub fn is_above(&self, wi: DVec3) -> bool {
         self.geometric_normal.dot(wi) > 0.0 && self.shading_normal.dot(wi) > 0.0
+    }
+
+    /// What a metallic-roughness surface does with light towards `wo`; none if it is none.
+    pub fn lobes(&self, wo: DVec3) -> Option<Lobes> {
+        self.physical.map(|surface| Lobes::new(&surface, self.shading_normal, self.front, wo))
+    }
+
+    /// Whether a direction is on one side of both the triangle and the shading normal's plane.
+    pub fn is_on_one_side(&self, wi: DVec3) -> bool {
+        self.geometric_normal.dot(wi) * self.shading_normal.dot(wi) > 0.0
+    }
+
+    /// The cosine by which light from a direction counts.
+    pub fn cosine(&self, wi: DVec3) -> f64 {
+        self.shading_normal.dot(wi).abs()
+    }
+
+    /// What a choice of luminaires has to know of the receiver: the shading normal, of length 2 if light from both of its sides is scattered.
+    pub fn receiver(&self) -> DVec3 {
+        let both = self.physical.is_some_and(|surface| surface.scatters_through());
+        if both { 2.0 * self.shading_normal } else { self.shading_normal }
+    }
+
+    /// The surface of the body that a ray which leaves in this direction goes through, if it absorbs.
+    pub fn inner_absorption(&self, direction: DVec3) -> Option<PhysicalSurface> {
+        let inwards = (self.geometric_normal.dot(direction) < 0.0) == self.front;
+        self.physical.filter(|surface| surface.body && surface.absorption != DVec3::ZERO && inwards)
+    }
+
+    /// By how much more a unit of what comes from `wi` is diluted than shares of energy are: `eta^2` of what is refracted.
+    pub fn dilution(&self, wo: DVec3, wi: DVec3) -> f64 {
+        if self.is_above(wi) { 1.0 } else { self.lobes(wo).map_or(1.0, |lobes| lobes.bend().powi(2)) }
     }
 
     /// Whether what scatters lies under a smooth dielectric ([`crate::scene::Material::is_coated`]).

@@ -188,7 +188,10 @@ fn left_to_paths(scene: &Scene, integrator: &Integrator) -> f64 {
         && matches!(extinction, Extinction::Off | Extinction::Throughput)
         && albedo_threshold.is_none();
     let lobes = |m: &Material| [m.lambert != Vec3::ZERO, m.glossy != Vec3::ZERO, m.has_impulse()];
-    let several = |m: &Material| lobes(m).into_iter().filter(|has| *has).count() > 1;
+    let several = |m: &Material| match &m.physical {
+        Some(physical) => physical.metallic < 1.0 || physical.maps.metallic.is_some() || physical.clearcoat > 0.0,
+        None => lobes(m).into_iter().filter(|has| *has).count() > 1,
+    };
     match found {
         false => 0.0,
         true if scene

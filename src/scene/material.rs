@@ -88,18 +88,22 @@ impl Material {
     /// Whether light goes through the surface, beside what its opacity lets pass.
     pub fn transmits(&self) -> bool {
         let physical = self.physical.as_ref();
-        physical.is_some_and(|physical| physical.transmission > 0.0 && physical.metallic < 1.0)
+        physical.is_some_and(|physical| physical.transmission > 0.0 && physical.metallic < 1.0 && physical.ior != 0.0)
             || (self.transmission != Vec3::ZERO && self.eta.is_some())
     }
 
-    /// Whether anything is mirrored or refracted.
+    /// Whether anything is mirrored or refracted, unscattered.
     pub fn has_impulse(&self) -> bool {
-        self.reflection != Vec3::ZERO || self.transmits()
+        match &self.physical {
+            Some(physical) => physical.may_be_smooth(),
+            None => self.reflection != Vec3::ZERO || self.transmits(),
+        }
     }
 
     /// Whether light that passes is bent, so that the surface has to be that of a closed body.
     pub fn bends(&self) -> bool {
-        self.transmits() && self.eta != Some(1.0) && !self.thin
+        let index = self.physical.as_ref().map_or(self.eta, |physical| Some(physical.ior));
+        self.transmits() && index != Some(1.0) && !self.thin
     }
 
     /// Whether the surface is that of a body that light goes through, which its faces have to enclose.

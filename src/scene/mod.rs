@@ -4,6 +4,7 @@
 //! is what the files hold and what the GPU receives; the reference widens the same numbers to `f64`, so both tracers see
 //! the same scene to the last bit.
 
+pub mod albedo_table;
 pub mod build;
 mod coat;
 mod darkness;
@@ -46,7 +47,7 @@ pub use luminaire_table::{EmissiveTriangle, LuminaireTable, SampledLuminaire};
 pub use material::{Maps, Material};
 pub use mesh::{Mesh, Object, Triangle};
 pub(crate) use mesh::{moved_box, outward, widen};
-pub use physical::{ChannelMap, Physical, PhysicalMaps};
+pub use physical::{ChannelMap, LEAST_ALPHA, Physical, PhysicalMaps, conductor_average, conductor_reflectance};
 pub use profile::Profile;
 pub use sensor::{Camera, Lens, Pivot, Projection, Sensor};
 pub use settings::{Exposure, FilmSettings, RenderSettings};

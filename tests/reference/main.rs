@@ -15,6 +15,7 @@ mod light_tree;
 mod lost_light;
 mod luminaire_choice;
 mod overlapping_lamps;
+mod physical;
 mod roulette;
 mod sampling;
 mod scattering;
