@@ -165,7 +165,7 @@ fn left_to_paths(scene: &Scene, integrator: &Integrator) -> f64 {
         && matches!(extinction, Extinction::Off | Extinction::Throughput)
         && albedo_threshold.is_none();
     let lobes = |m: &Material| [m.lambert != Vec3::ZERO, m.glossy != Vec3::ZERO, m.has_impulse()];
-    let several = |m: &Material| lobes(m).into_iter().filter(|has| *has).count() > 1;
+    let several = |m: &Material| m.physical.is_some() || lobes(m).into_iter().filter(|has| *has).count() > 1;
     match found {
         false => 0.0,
         true if scene.materials.iter().any(several) => 0.75,

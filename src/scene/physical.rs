@@ -123,3 +123,16 @@ impl Default for Physical {
         }
     }
 }
+
+impl Physical {
+    /// What is set and not modelled, in words.
+    pub fn not_modelled(&self) -> Vec<&'static str> {
+        let set = [
+            (self.sheen_color != Vec3::ZERO, "sheen"),
+            (self.anisotropy > 0.0, "anisotropy"),
+            (self.iridescence > 0.0, "iridescence"),
+            (self.dispersion > 0.0, "dispersion"),
+        ];
+        set.into_iter().filter(|(set, _)| *set).map(|(_, name)| name).collect()
+    }
+}

@@ -5,6 +5,7 @@ mod cameras;
 mod contents;
 mod file;
 mod foreign_words;
+mod materials;
 mod radians;
 mod settings;
 mod tables;
@@ -121,7 +122,7 @@ impl File<'_> {
             settings,
             files: loader.files,
             warnings: loader.warnings,
-            notes: Vec::new(),
+            notes: loader.notes,
             ground: None,
         };
         reach::check(&scene)?;
