@@ -110,9 +110,11 @@ impl Draft {
                 Some(otherwise) => *self = Draft { coloured: self.coloured, ..*otherwise },
                 None => self.physical = Some(Box::default()),
             },
-            (_, Some((key, at))) if self.physical.is_some() => {
+            (_, Some((key, at))) if self.physical.take().is_some() => {
                 if let Some(otherwise) = self.otherwise.take() {
                     *self = Draft { coloured: self.coloured, ..*otherwise };
+                }
+                if *key != "model" {
                     self.notes.push(format!(
                         "{at}: `{key}` is a word of Blinn-Phong, so that of material `{}` the words of the MTL file are taken by the letter, too; as \
                          a metallic-roughness surface, which the file means, it has `base_colour`, `roughness` and others",

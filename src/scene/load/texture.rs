@@ -188,7 +188,8 @@ impl Textures {
 
     /// The texture of a map whose alpha is an opacity. None if the file cannot be used, which is a warning.
     pub(super) fn opacity(&mut self, map: &MapFile, warnings: &mut Vec<String>) -> Option<u32> {
-        self.load(map, Kind::Opacity(map.channel), "there is no map then", warnings).map(|texture| self.placed(texture, map))
+        self.load(map, Kind::Opacity(map.channel), "there is no map then", warnings)
+            .map(|texture| self.placed(texture, map))
     }
 
     /// A loaded texture where the map wants it: another one with the same texels, unless it is there already.
@@ -227,13 +228,7 @@ impl Textures {
     }
 
     /// `instead` says what happens if the file cannot be used.
-    fn load(
-        &mut self,
-        map: &MapFile,
-        kind: Kind,
-        instead: &str,
-        warnings: &mut Vec<String>,
-    ) -> Option<u32> {
+    fn load(&mut self, map: &MapFile, kind: Kind, instead: &str, warnings: &mut Vec<String>) -> Option<u32> {
         let (path, guess) = match map.find() {
             Ok(found) => found,
             Err(reason) => {

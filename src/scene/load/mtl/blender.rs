@@ -60,7 +60,9 @@ impl Blender {
         } else {
             return None;
         };
-        Some(format!("{why}, which is not as Blender, which the first line names, writes a Principled BSDF: its words are taken by the letter"))
+        Some(format!(
+            "{why}, which is not as Blender, which the first line names, writes a Principled BSDF: its words are taken by the letter"
+        ))
     }
 
     /// What is said of a file that is read so.

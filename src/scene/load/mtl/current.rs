@@ -42,13 +42,13 @@ impl Current {
         self.words.names().into_iter().for_each(|word| self.ignore(word));
         self.impulses(at);
         self.multipliers_of_maps(at);
-        self.finished(file, "not modelled, ignored")
+        self.finished(file)
     }
 
-    /// The draft, with what is said of many materials; `ignored` says why words do not count.
-    pub(super) fn finished(self, file: &str, ignored: &str) -> Draft {
-        let Current { mut draft, ignored: words, shared, .. } = self;
-        let ignored = (!words.is_empty()).then(|| format!("{ignored}: {}", words.join(", ")));
+    /// The draft, with what is said of many materials.
+    pub(super) fn finished(self, file: &str) -> Draft {
+        let Current { mut draft, ignored, shared, .. } = self;
+        let ignored = (!ignored.is_empty()).then(|| format!("not modelled, ignored: {}", ignored.join(", ")));
         draft.shared = shared.into_iter().chain(ignored).map(|said| (file.to_owned(), said)).collect();
         draft
     }

@@ -27,6 +27,7 @@ pub(super) fn draft(mut reading: Current, blender: Option<Blender>, file: &str, 
     layers(&mut physical, &words, blender.is_some());
     transmission(&mut physical, &mut reading, words.any(), blender.is_some());
     index(&mut physical, &mut reading, blender);
+    let mut idle = vec![(ambient_map.file().is_some(), "map_Ka")];
     if blender.is_some() {
         // A level of 0.5 is what the index says; F0 grows with it.
         physical.specular_color = ks.map(|ks| 2.0 * ks);
@@ -40,15 +41,16 @@ pub(super) fn draft(mut reading: Current, blender: Option<Blender>, file: &str, 
     } else {
         let unsaid = [Vec3::ZERO, Vec3::splat(0.5)];
         let rough = words.roughness.is_some() || physical.maps.roughness.file().is_some();
-        let idle = [
+        idle.extend([
             (ks.is_some_and(|ks| !unsaid.contains(&ks)), "Ks"),
             (glossy_map.file().is_some(), "map_Ks"),
             (ns.is_some() && !rough, "Ns"),
-        ];
-        idle.into_iter().filter(|(idle, _)| *idle).for_each(|(_, word)| reading.ignore(word.to_owned()));
+        ]);
     }
-    if ambient_map.file().is_some() {
-        reading.ignore("map_Ka".to_owned());
+    let idle: Vec<&str> = idle.into_iter().filter(|(idle, _)| *idle).map(|(_, word)| word).collect();
+    if !idle.is_empty() {
+        let words = idle.join(", ");
+        reading.shared.push(format!("as a metallic-roughness material it has no use for {words}, which are ignored"));
     }
     reading.opacity(at);
     reading.multipliers_of_maps(at);
@@ -63,7 +65,7 @@ pub(super) fn draft(mut reading: Current, blender: Option<Blender>, file: &str, 
         }
     }
     reading.draft.physical = Some(Box::new(physical));
-    reading.finished(file, "of a metallic-roughness material these words do not count")
+    reading.finished(file)
 }
 
 /// `Pr` and `Pm`, or what Blender's `Ns`, `Ka` and `illum` were made of.
@@ -127,7 +129,9 @@ fn transmission(physical: &mut PhysicalDraft, reading: &mut Current, words: bool
     if share > 0.0 && (words || blender) {
         physical.transmission = Some(share);
         if !blender {
-            reading.shared.push("Tf makes it transmit, as Blender writes it beside these words; with Tf 0 it is opaque".into());
+            reading
+                .shared
+                .push("Tf makes it transmit, as Blender writes it beside these words; with Tf 0 it is opaque".into());
         }
         if reading.filter.is_some_and(|tf| tf != Vec3::splat(tf.x)) {
             reading.shared.push("of Tf, which is a colour, the mean is the share that passes; its tint is Kd".into());

@@ -111,7 +111,7 @@ impl File<'_> {
             sheen_color: table.sheen_colour.map(|colour| colour.0),
             sheen_roughness: table.sheen_roughness.map(|roughness| roughness.0),
             iridescence: table.iridescence.map(|strength| strength.0),
-            iridescence_ior: table.iridescence_ior.map(|ior| ior.0.max(1.0)),
+            iridescence_ior: table.iridescence_ior.map(|ior| ior.0),
             iridescence_thickness: table.iridescence_thickness.map(|thickness| thickness.0),
             dispersion: table.dispersion.map(|dispersion| dispersion.0),
             maps: PhysicalDraftMaps {

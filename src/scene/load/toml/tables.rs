@@ -1,9 +1,9 @@
 //! The tables of a scene file, as `scenes/README.md` describes them.
 
 use super::values::{
-    Albedo, Angle, Attenuation, Blades, Bounces, Colour, Eta, Exact, Exponent, Exposure, FilmThickness, FilterRadius,
-    Finite, Fov, Ior, MapOffset, MapScale, Matrix, NotNegative, Pixels, Positive, Probability, Samples, Shift,
-    Transmission, Triple, Unit,
+    Albedo, Angle, Attenuation, Blades, Bounces, Colour, Eta, Exact, Exponent, Exposure, FilmIor, FilmThickness,
+    FilterRadius, Finite, Fov, Ior, MapOffset, MapScale, Matrix, NotNegative, Pixels, Positive, Probability, Samples,
+    Shift, Transmission, Triple, Unit,
 };
 use crate::scene::{AreaSampling, Directions, Extinction, Filter, LightChoice, LightSampling, Sampler, Tone};
 use ::toml::Spanned;
@@ -212,7 +212,7 @@ pub(super) struct MaterialTable {
     pub anisotropy: Option<Unit>,
     pub anisotropy_rotation: Option<Exact>,
     pub iridescence: Option<Unit>,
-    pub iridescence_ior: Option<Ior>,
+    pub iridescence_ior: Option<FilmIor>,
     pub iridescence_thickness: Option<FilmThickness>,
     pub dispersion: Option<NotNegative>,
     pub base_colour_map: Option<Spanned<MapEntry>>,

@@ -154,6 +154,11 @@ pub(super) struct Attenuation(pub Vec3);
 #[serde(try_from = "f64")]
 pub(super) struct Ior(pub f32);
 
+/// The index of refraction of a film.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(try_from = "f64")]
+pub(super) struct FilmIor(pub f32);
+
 /// The thickness of a film in nanometres: the same everywhere, or the least and the greatest.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(try_from = "NumberOrPair")]
@@ -317,6 +322,14 @@ impl TryFrom<f64> for Ior {
         some.then_some(Ior(ior)).ok_or(
             "expected an index of refraction from 1 to 100, or 0 for a surface that reflects all of its `specular_colour`",
         )
+    }
+}
+
+impl TryFrom<f64> for FilmIor {
+    type Error = &'static str;
+    fn try_from(number: f64) -> Checked<Self> {
+        let some = (1.0..=f64::from(*ETAS.end())).contains(&number);
+        some.then_some(FilmIor(number as f32)).ok_or("expected an index of refraction from 1 to 100")
     }
 }
 
