@@ -203,8 +203,8 @@ fn maps_are_numbers_as_they_are_stored() {
 #[test]
 fn numbers_of_float_pictures_are_clamped() {
     let folder = with_maps("newmtl m\nmap_Pr wild.exr\n");
-    let image = image::Rgb32FImage::from_raw(2, 1, vec![2.0, 2.0, 2.0, 0.25, 0.25, 0.25]).expect("a size");
-    image.save(folder.path("wild.exr")).expect("a picture");
+    let texels = [2.0, 2.0, 2.0, 0.25, 0.25, 0.25];
+    luminaire::picture::save_linear(&folder.path("wild.exr"), 2, 1, &texels, 0.0).expect("an EXR");
     let scene = folder.load("mesh.obj");
     warned(&scene, &["wild.exr", "1 of its 2 texels are outside of 0 to 1"]);
     let map = first_material(&scene).physical.as_ref().expect("metallic-roughness").maps.roughness;
