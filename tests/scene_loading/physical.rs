@@ -151,6 +151,8 @@ fn what_is_out_of_range_is_clamped_with_its_line() {
     }
     assert_eq!(surface("newmtl m\nPr 1.5\nPm -1\n").0, Physical { roughness: 1.0, ..GREY });
     assert_eq!(surface("newmtl m\nPr .5\nKd 2 1 0\n").0.base_color, Vec3::new(1.0, 0.5, 0.0));
+    // A dark map does not make it right: the base colour itself is at most 1.
+    assert_eq!(surface("newmtl m\nPr .5\nKd 1 1 2\nmap_Kd a.png\n").0.base_color, Vec3::new(0.5, 0.5, 1.0));
 }
 
 /// Glass of a black `Kd` stays glass, now with a roughness; a colour transmits by `Tf` alone.

@@ -243,7 +243,9 @@ fn what_does_nothing_or_is_not_modelled_is_warned_of() {
     assert_eq!(loaded(quiet, "newmtl m\n").warnings, Vec::<String>::new());
     // A single triangle is no body.
     warned(&loaded("transmission = 1\n", "newmtl m\n"), &["`m`", "open edges"]);
-    assert_eq!(loaded("transmission = 1\nthin = true\n", "newmtl m\n").warnings, Vec::<String>::new());
+    for quiet in ["transmission = 1\nthin = true\n", "transmission = 1\nior = 1\n"] {
+        assert_eq!(loaded(quiet, "newmtl m\n").warnings, Vec::<String>::new(), "{quiet}");
+    }
 }
 
 /// Colour, emission, index and opacity come from the MTL file, whatever it means by the rest.

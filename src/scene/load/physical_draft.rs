@@ -262,7 +262,7 @@ impl PhysicalDraft {
     }
 }
 
-/// A colour that nowhere on its map exceeds 1, which would create energy: it is scaled down, with a warning.
+/// A colour that exceeds 1 neither by itself nor anywhere on its map, which would create energy: it is scaled down, with a warning.
 pub(super) fn bounded(
     colour: Vec3,
     map: Option<u32>,
@@ -271,7 +271,7 @@ pub(super) fn bounded(
     textures: &Textures,
     warnings: &mut Vec<String>,
 ) -> Vec3 {
-    let largest = map.map_or(Vec3::ONE, |map| textures.range(map).largest);
+    let largest = map.map_or(Vec3::ONE, |map| textures.range(map).largest.max(Vec3::ONE));
     let before = (colour * largest).max_element();
     if before <= 1.0 {
         return colour;
