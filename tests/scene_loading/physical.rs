@@ -141,7 +141,7 @@ fn what_is_out_of_range_is_clamped_with_its_line() {
         ("Pr .5\nNi .7", "mesh.mtl", &["`m`: Ni 0.7 is below 1"]),
         ("Pr .5\nKd 2 2 2", "mesh.mtl:3", &["Kd 2 is above 1"]),
         ("Pr .5\nKd 2 2 2", "", &["`m` would create energy: its base colour reaches 2"]),
-        ("Pm .5\nKs .2 .2 .2\nNs 5", "mesh.mtl", &["no use for Ks, Ns"]),
+        ("Pm .5\nKd 1 1 1\nKs .2 .2 .2\nNs 5", "mesh.mtl", &["no use for it: Ks, Ns"]),
         ("Pr .5\nillum 7\nKd .5 .5 .5", "mesh.mtl", &["illum 7 asks for glass", "by Tf"]),
         ("Ps .5", "", &["not modelled, ignored: sheen"]),
     ] {
@@ -153,6 +153,20 @@ fn what_is_out_of_range_is_clamped_with_its_line() {
     assert_eq!(surface("newmtl m\nPr .5\nKd 2 1 0\n").0.base_color, Vec3::new(1.0, 0.5, 0.0));
     // A dark map does not make it right: the base colour itself is at most 1.
     assert_eq!(surface("newmtl m\nPr .5\nKd 1 1 2\nmap_Kd a.png\n").0.base_color, Vec3::new(0.5, 0.5, 1.0));
+}
+
+/// Metals are written with a black `Kd` and a coloured `Ks`.
+#[test]
+fn a_metal_without_kd_has_the_colour_of_its_reflection() {
+    let (metal, warnings) = surface("newmtl m\nKd 0 0 0\nKs .9 .6 .2\nNs 798\nPr .25\nPm 1\nillum 3\n");
+    let expected = Physical { base_color: Vec3::new(0.9, 0.6, 0.2), metallic: 1.0, roughness: 0.25, ..NOTHING_SAID };
+    assert_eq!((metal, warnings.len()), (expected, 1), "{warnings:?}");
+    assert!(warnings[0].contains("material `m`: Kd is black, and Ks taken as the colour"), "{warnings:?}");
+    let (mapped, _) = surface("newmtl m\nmap_Ks a.png\nPm 1\n");
+    assert!(mapped.base_color == Vec3::ONE && mapped.maps.base_color.is_some());
+    for kept in ["Kd 0 0 0\nKs 0 0 0\nPm 1", "Kd 0 0 0\nKs .9 .6 .2\nPm .5", "Kd 0 0 0\nPm 1\nPr 1"] {
+        assert_eq!(surface(&format!("newmtl m\n{kept}\n")).0.base_color, Vec3::ZERO, "{kept}");
+    }
 }
 
 /// Glass of a black `Kd` stays glass, now with a roughness; a colour transmits by `Tf` alone.
@@ -278,6 +292,17 @@ fn older_blenders_have_their_own_numbers() {
         let roughness = if ns.starts_with("323") { 0.4 } else { 0.5 };
         assert!((surface.roughness - roughness).abs() < 1e-6, "{first}: {surface:?}");
         assert_eq!((surface.ior, surface.specular_color, warnings.len()), (ior, Vec3::ONE, 0), "{first}: {warnings:?}");
+    }
+}
+
+/// Faces without a material have one in files of Blender up to 3.0: grey, and a highlight that nobody chose.
+#[test]
+fn no_material_of_blender_is_grey() {
+    for words in ["Ns 0\nKa 0.000000 0.000000 0.000000", "Ns 500\nKa 0.8 0.8 0.8"] {
+        let text = format!(
+            "# Blender MTL File: 'None'\n# Material Count: 1\n\nnewmtl m\n{words}\nKd 0.8 0.8 0.8\nKs 0.8 0.8 0.8\nd 1\nillum 2\n"
+        );
+        assert_eq!(surface(&text), (GREY, Vec::new()));
     }
 }
 

@@ -65,6 +65,14 @@ impl Blender {
         ))
     }
 
+    /// Whether it is what the exporter up to 3.0 writes for faces without a material: a grey with a highlight that nobody chose.
+    pub(super) fn is_stand_in(self, current: &Current) -> bool {
+        let eight_tenths = Some(Vec3::splat(0.8));
+        let draft = &current.draft;
+        let alone = current.refraction.is_none() && draft.emission.is_none();
+        self.version.is_none() && alone && draft.diffuse == eight_tenths && draft.glossy == eight_tenths
+    }
+
     /// What is said of a file that is read so.
     pub(super) fn note(self, path: &Path) -> String {
         format!(

@@ -37,6 +37,11 @@ impl Current {
         }
     }
 
+    /// Whether it has no diffuse colour.
+    pub(super) fn is_black(&self) -> bool {
+        self.draft.maps.diffuse.file().is_none() && self.draft.diffuse.is_none_or(|kd| kd == Vec3::ZERO)
+    }
+
     /// What it is where words mean what the format says; `at` is the material in words.
     pub(super) fn by_the_letter(mut self, file: &str, at: &str) -> Draft {
         self.words.names().into_iter().for_each(|word| self.ignore(word));

@@ -20,7 +20,9 @@ pub(super) fn draft(mut reading: Current, blender: Option<Blender>, file: &str, 
     let words = std::mem::take(&mut reading.words);
     let maps = &mut reading.draft.maps;
     let (glossy_map, ambient_map) = (std::mem::take(&mut maps.glossy), std::mem::take(&mut maps.ambient));
+    let stand_in = blender.is_some_and(|blender| blender.is_stand_in(&reading));
     let (ks, ns) = (reading.draft.glossy.take(), reading.draft.exponent.take());
+    let (ks, ns) = if stand_in { (None, None) } else { (ks, ns) };
     let ka = reading.draft.ambient.take();
     let mut physical = PhysicalDraft::default();
     roughness_and_metal(&mut physical, &words, (ns, ka, reading.illum), blender);
@@ -38,6 +40,15 @@ pub(super) fn draft(mut reading: Current, blender: Option<Blender>, file: &str, 
             stored: true,
             ..map.clone()
         });
+    } else if reading.is_black()
+        && physical.transmission.is_none()
+        && physical.metallic.is_none_or(|metal| metal == 1.0)
+        && (glossy_map.file().is_some() || ks.is_some_and(|ks| ks != Vec3::ZERO))
+    {
+        // What has no other colour has that of its reflection: so metals are written.
+        reading.draft.diffuse = ks;
+        reading.draft.maps.diffuse = glossy_map;
+        reading.shared.push("Kd is black, and Ks taken as the colour of the metal (base colour)".into());
     } else {
         let unsaid = [Vec3::ZERO, Vec3::splat(0.5)];
         let rough = words.roughness.is_some() || physical.maps.roughness.file().is_some();
@@ -50,7 +61,7 @@ pub(super) fn draft(mut reading: Current, blender: Option<Blender>, file: &str, 
     let idle: Vec<&str> = idle.into_iter().filter(|(idle, _)| *idle).map(|(_, word)| word).collect();
     if !idle.is_empty() {
         let words = idle.join(", ");
-        reading.shared.push(format!("as a metallic-roughness material it has no use for {words}, which are ignored"));
+        reading.shared.push(format!("ignored, for a metallic-roughness material has no use for it: {words}"));
     }
     reading.opacity(at);
     reading.multipliers_of_maps(at);
@@ -109,8 +120,7 @@ fn layers(physical: &mut PhysicalDraft, words: &Words, blender: bool) {
 
 /// `Tf` where there are words that make it a share; and clear glass, which has a black `Kd`.
 fn transmission(physical: &mut PhysicalDraft, reading: &mut Current, words: bool, blender: bool) {
-    let draft = &reading.draft;
-    let black = draft.maps.diffuse.file().is_none() && draft.diffuse.is_none_or(|kd| kd == Vec3::ZERO);
+    let black = reading.is_black();
     let glass = reading.illum.filter(|illum| matches!(illum, 4 | 6 | 7 | 9) && !blender);
     if let Some(illum) = glass.filter(|_| black) {
         if reading.is_glass(illum) {
