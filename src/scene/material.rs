@@ -1,6 +1,6 @@
 //! What surfaces are made of.
 
-use super::physical::Physical;
+use super::physical::{Physical, PhysicalMaps};
 use glam::Vec3;
 
 /// The surface's scattering and emission: normalised Blinn-Phong (slide "Surface Element Class") and impulses (slides "Impulse
@@ -100,10 +100,14 @@ impl Material {
         }
     }
 
+    /// The index of refraction of what lies behind the outward normal over that in front of it; none: there is no Fresnel, or it is infinite.
+    pub fn index_of_refraction(&self) -> Option<f32> {
+        self.physical.as_ref().map_or(self.eta, |physical| Some(physical.ior).filter(|ior| *ior > 0.0))
+    }
+
     /// Whether light that passes is bent, so that the surface has to be that of a closed body.
     pub fn bends(&self) -> bool {
-        let index = self.physical.as_ref().map_or(self.eta, |physical| Some(physical.ior));
-        self.transmits() && index != Some(1.0) && !self.thin
+        self.transmits() && self.index_of_refraction() != Some(1.0) && !self.thin
     }
 
     /// Whether the surface is that of a body that light goes through, which its faces have to enclose.
@@ -121,6 +125,17 @@ impl Material {
     pub fn is_coated(&self) -> bool {
         let base = self.lambert != Vec3::ZERO || self.glossy != Vec3::ZERO;
         base && self.reflection != Vec3::ZERO && self.eta.is_some() && self.transmission == Vec3::ZERO
+    }
+
+    /// Whether any of its numbers has a texture.
+    pub fn has_maps(&self) -> bool {
+        let physical = self.physical.as_ref().is_some_and(|physical| physical.maps != PhysicalMaps::default());
+        physical || self.maps != Maps::default()
+    }
+
+    /// Whether nothing is scattered, so that which way the surface faces makes no difference.
+    pub fn is_black(&self) -> bool {
+        self.physical.is_none() && self.lambert == Vec3::ZERO && self.glossy == Vec3::ZERO && !self.has_impulse()
     }
 
     /// Whether a ray may pass the surface as if it were not there.

@@ -12,6 +12,8 @@ mod lamps;
 mod mtl;
 mod obj;
 mod own_scenes;
+mod physical;
+mod physical_keys;
 mod pictures;
 mod polygons;
 mod scene_files;

@@ -1,12 +1,12 @@
 //! The loader: meshes, materials and textures that a scene has loaded so far, each file once.
 
 use super::far::{self, FilePlace};
-use super::material_draft::{Draft, DraftMaps};
+use super::material_draft::Draft;
 use super::text_file::shortened;
 use super::texture::Textures;
 use super::{ies, mtl, named_file, obj};
 use crate::Result;
-use crate::scene::{Maps, Material, Mesh, Object, Profile, Texture};
+use crate::scene::{Material, Mesh, Object, Profile, Texture};
 use glam::{DAffine3, DVec3};
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -19,6 +19,8 @@ pub(super) struct Loader {
     pub meshes: Vec<Arc<Mesh>>,
     /// What was guessed, dropped or scaled.
     pub warnings: Vec<String>,
+    /// What was chosen where there was a choice.
+    pub notes: Vec<String>,
     /// Every file that was read or that a file names and that is there.
     pub files: Vec<PathBuf>,
     /// Materials as far as they are known; number 0 is the fallback, "default".
@@ -57,6 +59,7 @@ impl Loader {
         Loader {
             meshes: Vec::new(),
             warnings: Vec::new(),
+            notes: Vec::new(),
             files: overrides.iter().flat_map(Draft::map_files).collect(),
             drafts: vec![Draft::named("default")],
             overrides,
@@ -202,8 +205,7 @@ impl Loader {
             if shown {
                 materials.push(draft.finish(&mut textures, &mut self.warnings));
             } else {
-                let without_maps = Draft { maps: DraftMaps::default(), ..draft.clone() };
-                materials.push(without_maps.finish(&mut textures, &mut Vec::new()));
+                materials.push(draft.without_maps().finish(&mut textures, &mut Vec::new()));
             }
         }
         self.warn_of_missing_uvs(objects, &materials);
@@ -254,7 +256,7 @@ impl Loader {
         for object in objects.iter().filter(|object| seen.insert((object.mesh, object.material))) {
             for WithoutUv { material, at } in &self.without_uv[object.mesh as usize] {
                 let material = &materials[object.material.unwrap_or(*material) as usize];
-                if material.maps != Maps::default() && said.insert((&material.name, at)) {
+                if material.has_maps() && said.insert((&material.name, at)) {
                     self.warnings.push(format!(
                         "{at}: faces without texture coordinates, but material `{}` has maps; (0, 0) is used",
                         material.name
@@ -311,7 +313,9 @@ impl Loader {
             self.files.extend(mtl::named_files(path));
         }
         let mut materials = HashMap::new();
-        for draft in mtl::read(path, &mut self.warnings)? {
+        let mtl::Library { drafts, note } = mtl::read(path, &mut self.warnings)?;
+        self.notes.extend(note);
+        for draft in drafts {
             materials.insert(draft.name.clone(), self.drafts.len() as u32);
             self.drafts.push(draft);
         }

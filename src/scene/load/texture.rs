@@ -2,7 +2,7 @@
 
 use super::{named_file, texel_faults};
 use crate::picture::decode::{CHUNK, ImageFile};
-use crate::scene::Texture;
+use crate::scene::{ChannelMap, Texture};
 use glam::{Affine2, Vec2, Vec3};
 use half::f16;
 use rayon::prelude::*;
@@ -32,6 +32,8 @@ pub(super) struct MapFile {
     pub channel: Channel,
     /// The image's alpha is the opacity: colours that are multiplied by it already are divided by it.
     pub straight: bool,
+    /// Its colours are numbers as they are stored, whatever curve the picture has.
+    pub stored: bool,
     /// `-s`: how often the picture is there between the coordinates 0 and 1, each way.
     pub scale: Vec2,
     /// `-o`: the place in the picture, as a share of its size, that the coordinates (0, 0) show.
@@ -60,9 +62,23 @@ struct Key {
     clamp: bool,
     base: u32,
     gain: u32,
-    /// None: colours, with the image's own alpha.
-    scalar: Option<Channel>,
+    kind: Kind,
     straight: bool,
+}
+
+/// What the texels of a texture are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+enum Kind {
+    /// Colours, with the image's own alpha.
+    Colours,
+    /// The same without their curve.
+    Stored,
+    /// An opacity in alpha.
+    Opacity(Channel),
+    /// Numbers from 0 to 1, as they are stored: a number a channel.
+    Shares,
+    /// A number from 0 to 1 in red: the luminance of what is stored.
+    Luminance,
 }
 
 /// The textures loaded so far; one file with the same options is loaded once, wherever its maps place it.
@@ -95,6 +111,7 @@ impl MapFile {
             scale: Vec2::ONE,
             offset: Vec2::ZERO,
             straight: false,
+            stored: false,
         }
     }
 
@@ -108,6 +125,10 @@ impl MapFile {
     /// The file, if there is one.
     pub(super) fn path(&self) -> Option<PathBuf> {
         Some(self.find().ok()?.0)
+    }
+
+    fn colours(&self) -> Kind {
+        if self.stored { Kind::Stored } else { Kind::Colours }
     }
 
     /// First the scale, then the offset: so Blender and three.js read and write `-s` and `-o`.
@@ -137,7 +158,7 @@ impl Textures {
     /// The texture of a map that multiplies a colour; its alpha is the image's own. If the file cannot be used, which is a
     /// warning, a checkerboard that nobody overlooks.
     pub(super) fn visible(&mut self, map: &MapFile, warnings: &mut Vec<String>) -> u32 {
-        let texture = self.load(map, None, "a checkerboard of magenta and black shows instead", warnings);
+        let texture = self.load(map, map.colours(), "a checkerboard of magenta and black shows instead", warnings);
         match texture {
             Some(texture) => self.placed(texture, map),
             None => self.fallback(),
@@ -146,12 +167,29 @@ impl Textures {
 
     /// The same, but none if the file cannot be used.
     pub(super) fn optional(&mut self, map: &MapFile, warnings: &mut Vec<String>) -> Option<u32> {
-        self.load(map, None, "there is no map then", warnings).map(|texture| self.placed(texture, map))
+        self.load(map, map.colours(), "there is no map then", warnings).map(|texture| self.placed(texture, map))
+    }
+
+    /// The texture of a map that multiplies a number, and its channel: the one that is asked for, or luminance, as Blender makes a number of a colour. None if
+    /// the file cannot be used, which is a warning.
+    pub(super) fn number(&mut self, map: &MapFile, warnings: &mut Vec<String>) -> Option<ChannelMap> {
+        let (kind, channel) = match map.channel {
+            Channel::One(channel) => (Kind::Shares, channel),
+            Channel::Any | Channel::Luminance => (Kind::Luminance, 0),
+        };
+        let texture = self.load(map, kind, "there is no map then", warnings)?;
+        Some(ChannelMap { texture: self.placed(texture, map), channel })
+    }
+
+    /// The texture of a map whose channels are three numbers. None if the file cannot be used, which is a warning.
+    pub(super) fn numbers(&mut self, map: &MapFile, warnings: &mut Vec<String>) -> Option<u32> {
+        self.load(map, Kind::Shares, "there is no map then", warnings).map(|texture| self.placed(texture, map))
     }
 
     /// The texture of a map whose alpha is an opacity. None if the file cannot be used, which is a warning.
     pub(super) fn opacity(&mut self, map: &MapFile, warnings: &mut Vec<String>) -> Option<u32> {
-        self.load(map, Some(map.channel), "there is no map then", warnings).map(|texture| self.placed(texture, map))
+        self.load(map, Kind::Opacity(map.channel), "there is no map then", warnings)
+            .map(|texture| self.placed(texture, map))
     }
 
     /// A loaded texture where the map wants it: another one with the same texels, unless it is there already.
@@ -190,13 +228,7 @@ impl Textures {
     }
 
     /// `instead` says what happens if the file cannot be used.
-    fn load(
-        &mut self,
-        map: &MapFile,
-        scalar: Option<Channel>,
-        instead: &str,
-        warnings: &mut Vec<String>,
-    ) -> Option<u32> {
+    fn load(&mut self, map: &MapFile, kind: Kind, instead: &str, warnings: &mut Vec<String>) -> Option<u32> {
         let (path, guess) = match map.find() {
             Ok(found) => found,
             Err(reason) => {
@@ -215,7 +247,7 @@ impl Textures {
             clamp: map.clamp,
             base: map.base.to_bits(),
             gain: map.gain.to_bits(),
-            scalar,
+            kind,
             straight: map.straight,
         };
         if let Some(texture) = self.by_key.get(&key) {
@@ -229,7 +261,7 @@ impl Textures {
         let texture = match ImageFile::open(&path, MOST_TEXELS - self.texels, too_many) {
             Ok(image) => {
                 self.texels += image.len() as u64;
-                let (texels, faults) = texels(&image, map, scalar);
+                let (texels, faults) = texels(&image, map, kind);
                 for fault in image.warnings.iter().cloned().chain(faults) {
                     if self.said.insert(format!("{} {fault}", path.display())) {
                         warnings.push(format!("{}: the texture {}: {fault}", map.at, path.display()));
@@ -264,18 +296,28 @@ impl Textures {
 }
 
 /// The texels as the tracers see them: options applied, finite, not negative, within half precision; and what was changed for that, in words.
-fn texels(image: &ImageFile, map: &MapFile, scalar: Option<Channel>) -> (Vec<[f16; 4]>, Vec<String>) {
-    let scalar = match scalar {
-        Some(Channel::Any) if image.has_transparency() => Some(Channel::One(3)),
+fn texels(image: &ImageFile, map: &MapFile, kind: Kind) -> (Vec<[f16; 4]>, Vec<String>) {
+    let kind = match kind {
+        Kind::Opacity(Channel::Any) if image.has_transparency() => Kind::Opacity(Channel::One(3)),
         other => other,
     };
     let range = |value: f32| map.base + map.gain * value;
-    match scalar {
-        None => (
+    let all = |texel: &(dyn Fn(usize) -> [f16; 4] + Sync)| -> Vec<[f16; 4]> {
+        (0..image.len()).into_par_iter().with_min_len(CHUNK).map(texel).collect()
+    };
+    match kind {
+        Kind::Colours => (
             image.decode(map.straight, |value| half(range(value)), opacity),
             texel_faults::of_colours(image, map.straight, range),
         ),
-        Some(channel) => {
+        Kind::Stored => {
+            let colour = |texel| {
+                let [r, g, b, a] = image.stored(texel);
+                [half(range(r)), half(range(g)), half(range(b)), opacity(a)]
+            };
+            (all(&colour), texel_faults::of_colours(image, false, range))
+        }
+        Kind::Opacity(channel) => {
             let value = |texel| {
                 let stored = image.stored(texel);
                 range(match channel {
@@ -284,8 +326,19 @@ fn texels(image: &ImageFile, map: &MapFile, scalar: Option<Channel>) -> (Vec<[f1
                 })
             };
             let scalar = |texel| [f16::ONE, f16::ONE, f16::ONE, opacity(value(texel))];
-            let texels = (0..image.len()).into_par_iter().with_min_len(CHUNK).map(scalar).collect();
-            (texels, texel_faults::of_opacities(image, value))
+            (all(&scalar), texel_faults::of_opacities(image, value))
+        }
+        Kind::Shares => {
+            let numbers = |texel| image.stored(texel).map(range);
+            (all(&|texel| numbers(texel).map(opacity)), texel_faults::of_numbers(image, numbers))
+        }
+        Kind::Luminance => {
+            let number = |texel| range(luminance(image.stored(texel)));
+            let grey = |texel| {
+                let grey = opacity(number(texel));
+                [grey, grey, grey, f16::ONE]
+            };
+            (all(&grey), texel_faults::of_numbers(image, |texel| [number(texel); 4]))
         }
     }
 }

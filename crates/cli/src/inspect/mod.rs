@@ -1,6 +1,7 @@
 //! `luminaire inspect`.
 
 mod integrator;
+mod physical;
 mod tables;
 
 use self::tables::{luminaires, materials, meshes, objects, point, rgb, textures};

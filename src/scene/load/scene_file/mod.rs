@@ -1,7 +1,9 @@
 //! A bare model as a scene file, to be changed: what was chosen for it, and every key with what it means.
 
 mod groups;
+mod maps;
 mod materials;
+mod physical;
 mod words;
 
 use super::bare_mesh::{self, BareMesh, Z_UP};

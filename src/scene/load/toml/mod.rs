@@ -6,6 +6,7 @@ mod contents;
 mod file;
 mod foreign_words;
 mod luminaires;
+mod materials;
 mod radians;
 mod settings;
 mod tables;
@@ -123,7 +124,7 @@ impl File<'_> {
             settings,
             files: loader.files,
             warnings: loader.warnings,
-            notes: Vec::new(),
+            notes: loader.notes,
             ground: None,
         };
         reach::check(&scene)?;
