@@ -80,11 +80,12 @@ Physical load_physical(uint place) {
     vec4 d = physical_texel(base + 3);
     vec4 e = physical_texel(base + 4);
     vec4 f = physical_texel(base + 5);
-    vec4 g = physical_texel(base + 6);
+    // Not by way of a float: a small whole number is a denormal one, which may become 0.
+    uvec4 g = texelFetch(physical, base + 6);
     uvec4 m = texelFetch(physical, base + 7);
     uvec4 n = texelFetch(physical, base + 8);
     uvec4 o = texelFetch(physical, base + 9);
-    return Physical(a.xyz, a.w, b.xyz, b.w, c.xyz, c.w, d.xyz, d.w, e.xyz, e.w, f.xyz, f.w, g.x, g.y, g.z, floatBitsToUint(g.w),
+    return Physical(a.xyz, a.w, b.xyz, b.w, c.xyz, c.w, d.xyz, d.w, e.xyz, e.w, f.xyz, f.w, uintBitsToFloat(g.x), uintBitsToFloat(g.y), uintBitsToFloat(g.z), g.w,
                     m.x, m.y, m.z, m.w, n.x, n.y, n.z, n.w, o.x, o.y, o.z);
 }
 
