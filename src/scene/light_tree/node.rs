@@ -65,8 +65,6 @@ const CONE_MARGIN: f64 = 1e-3;
 const WIDE: f64 = 0.95;
 /// A relative margin of radii, far above the rounding of distances in `f32`.
 const RADIUS_MARGIN: f64 = 1e-5;
-/// How far rounding to `f32` moves a corner or a centre, relative to its coordinates.
-const PLACE_MARGIN: f64 = 2.0 * f32::EPSILON as f64;
 /// How much more than the mean light may go one way where normals look everywhere.
 const MOST_LEANING: f64 = 0.9;
 /// What is left of the weakest next to the strongest, so that `f32` still has it.
@@ -137,9 +135,7 @@ pub(super) fn child(group: &[Source], strongest: f64) -> Child {
     let center = (0.5 * (low.as_dvec3() + high.as_dvec3())).as_vec3();
     let from_center = center.as_dvec3();
     let radius = corners().map(|corner| corner.as_dvec3().distance_squared(from_center)).fold(0.0, f64::max).sqrt();
-    // Far from the origin a lamp may be smaller than the rounding of where it is.
-    let farthest = low.abs().max(high.abs()).length();
-    let radius = (radius * (1.0 + RADIUS_MARGIN) + PLACE_MARGIN * f64::from(farthest)) as f32;
+    let radius = (radius * (1.0 + RADIUS_MARGIN)) as f32;
 
     let two_sided = group.iter().any(Source::turns);
     let axis = axis_sum(group).normalize_or_zero();
