@@ -4,7 +4,7 @@ use glam::Vec3;
 
 /// A metallic-roughness surface (Khronos, glTF 2.0, section 3.9 and appendix B, with the extensions `KHR_materials_*` named below). Where a material
 /// has one, it is all that scatters: the Blinn-Phong numbers and impulses of [`Material`](super::Material) beside it are zero; emission, opacity, `one_sided` and
-/// `thin` are the material's own.
+/// `thin` are the material's own. No tracer knows it yet: such a material scatters nothing, and no loader makes one.
 ///
 /// Colours are linear. Each number is multiplied by its map, if it has one ([`PhysicalMaps`]).
 #[derive(Debug, Clone, PartialEq)]
