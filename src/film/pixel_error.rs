@@ -66,11 +66,11 @@ impl Film {
         });
         let firefly = Rows::new(rows(1), |pixel| {
             let (Own { channels: [.., grey], known }, [.., expected]) = (own.at(pixel), expected.at(pixel));
-            let others = self.around(pixel).filter(|j| *j != pixel).map(|j| own.at(j).channels[3].mean);
-            let usual = median(others.collect()).unwrap_or(*expected);
+            let stands_out = |usual: f64| grey.mean > FIREFLY_CONTRAST * (usual + FIREFLY_FLOOR * half_power_mean);
+            let others = || self.around(pixel).filter(|j| *j != pixel).map(|j| own.at(j).channels[3].mean);
             !known
                 || grey.naive > FIREFLY_VARIANCE * grey.mean * grey.mean
-                    && grey.mean > FIREFLY_CONTRAST * (usual.min(*expected) + FIREFLY_FLOOR * half_power_mean)
+                    && (stands_out(*expected) || median(others().collect()).is_some_and(stands_out))
         });
         // By which the others count, whatever the unit of the light.
         let unit = (half_power_mean * half_power_mean).max(f64::MIN_POSITIVE);

@@ -184,7 +184,13 @@ fn apart(own: &str, others: &str) -> (String, String) {
     let parts = |text: &str| -> Option<Vec<String>> {
         let (_, inner) = text.split_once("{ ")?;
         let (inner, _) = inner.rsplit_once(" }")?;
-        Some(inner.split(", ").map(str::to_owned).collect())
+        // Within brackets a comma parts nothing.
+        let mut depth = 0i32;
+        let apart = |c: char| {
+            depth += i32::from("([{".contains(c)) - i32::from(")]}".contains(c));
+            c == ',' && depth == 0
+        };
+        Some(inner.split(apart).map(|part| part.trim().to_owned()).collect())
     };
     match (parts(own), parts(others)) {
         (Some(a), Some(b)) if a.len() == b.len() => {
@@ -236,4 +242,22 @@ fn geometry(meshes: &[Arc<Mesh>], objects: &[Object]) -> String {
             write(hash, &(mesh, object_to_world, material));
         }
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::apart;
+
+    #[test]
+    fn only_what_differs_is_said() {
+        let told = |own: &str, others: &str| apart(own, others);
+        let pair = |a: &str, b: &str| (a.to_owned(), b.to_owned());
+        assert_eq!(
+            told("P(E { a: X, b: Some(1), c: Y })", "P(E { a: X, b: None, c: Z })"),
+            pair("b: Some(1), c: Y", "b: None, c: Z")
+        );
+        assert_eq!(told("S { at: V(0, 1) }", "S { at: V(0, 2) }"), pair("at: V(0, 1)", "at: V(0, 2)"));
+        assert_eq!(told("S { at: 0 }", "P(E { a: X, b: Y })"), pair("S { at: 0 }", "P(E { a: X, b: Y })"));
+        assert_eq!(told("Sobol", "Independent"), pair("Sobol", "Independent"));
+    }
 }

@@ -100,9 +100,10 @@ impl LuminaireTable {
         }
         let (low, high) = scene.model_bounds();
         let (center, radius) = (0.5 * (low + high), 0.5 * (high - low).length());
-        let left_to_paths = left_to_paths(scene, &scene.integrator);
-        let environment =
-            scene.environment.as_ref().and_then(|environment| EnvironmentDistribution::new(environment, left_to_paths));
+        let environment = scene
+            .environment
+            .as_ref()
+            .and_then(|environment| EnvironmentDistribution::new(environment, left_to_paths(scene, &scene.integrator)));
         entries.extend(scene.luminaires.iter().filter(|luminaire| luminaire.is_disc()).filter_map(disc));
         entries.extend(environment.as_ref().map(|_| SampledLuminaire::Environment));
         let exitance: Vec<f64> = scene.materials.iter().map(|material| exitance(scene, material)).collect();
@@ -111,10 +112,7 @@ impl LuminaireTable {
             .map(|entry| match entry {
                 SampledLuminaire::Impulse(luminaire) => impulse_power(luminaire, center, radius),
                 SampledLuminaire::Area(triangle) => exitance[triangle.material as usize] * triangle.area(),
-                SampledLuminaire::Sun(sun) => {
-                    let irradiance = sun.radiance * (PI * sun.extent * (2.0 - sun.extent));
-                    PI * radius * radius * irradiance.element_sum() / 3.0
-                }
+                SampledLuminaire::Sun(sun) => PI * radius * radius * sun.irradiance().element_sum() / 3.0,
                 SampledLuminaire::Environment => {
                     PI * radius * radius * environment.as_ref().map_or(0.0, |environment| environment.sampled)
                 }
@@ -160,7 +158,7 @@ impl LuminaireTable {
 
     /// The discs at infinity, with the number of each in the table; they stand there in a row.
     pub fn suns(&self) -> impl Iterator<Item = (usize, &SunDisc)> {
-        let after = self.entries.len() - usize::from(self.environment.is_some());
+        let after = self.environment_entry().unwrap_or(self.entries.len());
         // From behind, so that a table of a million triangles is not searched.
         let is_sun = |entry: &&SampledLuminaire| matches!(entry, SampledLuminaire::Sun(_));
         let count = self.entries[..after].iter().rev().take_while(is_sun).count();
@@ -168,13 +166,15 @@ impl LuminaireTable {
         suns.filter_map(|(entry, index)| if let SampledLuminaire::Sun(sun) = entry { Some((index, sun)) } else { None })
     }
 
+    /// Where the environment stands: last, if it is there. Without power, in a scene without extent, it is not.
+    fn environment_entry(&self) -> Option<usize> {
+        let last = self.entries.len().checked_sub(1)?;
+        matches!(self.entries[last], SampledLuminaire::Environment).then_some(last)
+    }
+
     /// The probability of choosing the environment; 0 if there is none.
     pub fn environment_probability(&self) -> f64 {
-        // The last entry, unless it had no power: in a scene without extent.
-        match self.entries.last() {
-            Some(SampledLuminaire::Environment) => self.choice.pdf.last().copied().unwrap_or(0.0),
-            _ => 0.0,
-        }
+        self.environment_entry().map_or(0.0, |entry| self.choice.pdf[entry])
     }
 }
 
@@ -192,18 +192,13 @@ fn left_to_paths(scene: &Scene, integrator: &Integrator) -> f64 {
         Some(physical) => physical.metallic < 1.0 || physical.maps.metallic.is_some() || physical.clearcoat > 0.0,
         None => lobes(m).into_iter().filter(|has| *has).count() > 1,
     };
-    match found {
-        false => 0.0,
-        true if scene
-            .materials
-            .iter()
-            .zip(scene.materials_in_use())
-            .any(|(material, used)| used && several(material)) =>
-        {
-            0.75
-        }
-        true => 1.0,
+    if !found {
+        return 0.0;
     }
+    // First by the materials, which are few: their triangles may be many.
+    let several = scene.materials.iter().any(several)
+        && scene.materials.iter().zip(scene.materials_in_use()).any(|(material, used)| used && several(material));
+    if several { 0.75 } else { 1.0 }
 }
 
 /// The tree over all entries that are somewhere and emit, if the estimator chooses by one; `entries` may have some of no power, which the table

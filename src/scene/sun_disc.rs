@@ -20,8 +20,23 @@ impl SunDisc {
     /// is `pi sin^2` of its radius.
     pub fn new(direction: Vec3, irradiance: Vec3, angle: f32) -> Self {
         let extent = one_minus_cos(0.5 * f64::from(angle));
-        let sine2 = extent * (2.0 - extent);
-        SunDisc { towards: -direction, extent, radiance: irradiance.as_dvec3() / (PI * sine2) }
+        let unit = SunDisc { towards: -direction, extent, radiance: DVec3::ONE };
+        SunDisc { radiance: irradiance.as_dvec3() / unit.irradiance(), ..unit }
+    }
+
+    /// The squared sine of its angular radius.
+    fn sine2(&self) -> f64 {
+        self.extent * (2.0 - self.extent)
+    }
+
+    /// Irradiance on a surface that faces its middle.
+    pub fn irradiance(&self) -> DVec3 {
+        self.radiance * (PI * self.sine2())
+    }
+
+    /// Its diameter in degrees.
+    pub fn angle(&self) -> f64 {
+        2.0 * self.sine2().sqrt().atan2(1.0 - self.extent).to_degrees()
     }
 
     /// Density of an even choice of its directions, per steradian.

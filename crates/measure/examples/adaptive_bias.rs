@@ -48,9 +48,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     print!("{}", markdown::head(&["scene", "renders", "with shares", "adaptive over even", "standard error", "z"]));
     for path in &paths {
         let mut scene = scene::load(Path::new(path))?;
-        let film = &mut scene.film;
-        film.height = (f64::from(width) * f64::from(film.height) / f64::from(film.width)).round().max(1.0) as u32;
-        film.width = width;
+        scene.film = scene.film.at_width(width);
         let about = render(&mut scene, 0, samples(TRUTH))?.film;
         let dark = Brightness::of((0..about.pixels()).flat_map(|pixel| about.mean(pixel))).half_power_mean() / 3.0;
         let number = |film: &Film| {

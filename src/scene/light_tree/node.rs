@@ -147,8 +147,7 @@ pub(super) fn child(group: &[Source], strongest: f64) -> Child {
         return Child { center, radius, strength, axis, spread, closed: false, cone: true };
     }
     let cosine = |source: &Source| {
-        // What shines to its back as well has no side.
-        let cosine = if source.cone.is_some_and(|cone| cone > 90.0) { -1.0 } else { axis.dot(source.normal) };
+        let cosine = if source.shines_back() { -1.0 } else { axis.dot(source.normal) };
         if source.turns() { cosine.abs() } else { cosine }
     };
     let least = group.iter().map(cosine).fold(1.0, f64::min);
@@ -157,7 +156,7 @@ pub(super) fn child(group: &[Source], strongest: f64) -> Child {
     // All around, a triangle sends a quarter of what it sends along its normal, one with two sides half.
     let share = |source: &Source| match (source.normal == DVec3::ZERO, source.turns()) {
         (true, _) => 1.0,
-        _ if source.cone.is_some_and(|cone| cone > 90.0) => 1.0,
+        _ if source.shines_back() => 1.0,
         (_, true) => 0.5,
         (_, false) => 0.25,
     };

@@ -26,4 +26,9 @@ impl Source {
     pub(super) fn turns(&self) -> bool {
         self.two_sided && !self.closed
     }
+
+    /// Whether its cone reaches behind it, so that it has no side.
+    pub(super) fn shines_back(&self) -> bool {
+        self.cone.is_some_and(|cone| cone > 90.0)
+    }
 }

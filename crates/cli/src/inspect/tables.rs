@@ -175,16 +175,12 @@ pub(super) fn luminaires(scene: &Scene) -> Vec<Vec<String>> {
                     chosen,
                 ]);
             }
-            SampledLuminaire::Sun(sun) => {
-                let sine2 = sun.extent * (2.0 - sun.extent);
-                let degrees = 2.0 * sine2.sqrt().atan2(1.0 - sun.extent).to_degrees();
-                rows.push(vec![
-                    "sun disc".into(),
-                    format!("towards {}, {degrees:.4} degrees", rgb(-sun.towards)),
-                    format!("irradiance {}", rgb((sun.radiance * (std::f64::consts::PI * sine2)).as_vec3())),
-                    chosen,
-                ]);
-            }
+            SampledLuminaire::Sun(sun) => rows.push(vec![
+                "sun disc".into(),
+                format!("towards {}, {:.4} degrees", rgb(-sun.towards), sun.angle()),
+                format!("irradiance {}", rgb(sun.irradiance().as_vec3())),
+                chosen,
+            ]),
             SampledLuminaire::Impulse(
                 Luminaire::Infinite { direction, irradiance } | Luminaire::Sun { direction, irradiance, .. },
             ) => rows.push(vec![

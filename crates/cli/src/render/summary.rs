@@ -47,7 +47,7 @@ pub fn summary(outcome: &Outcome, written: &[PathBuf]) -> String {
         });
         text += &format!("--noise {limit} was not reached{why}\n");
     }
-    if options.adaptive && rendered.shares.is_none() {
+    if options.adaptive && rendered.shares.is_none() && matches!(rendered.end, End::Noise) {
         text +=
             "--adaptive: every pixel got as many samples, because other numbers of them would not have saved enough\n";
     }
@@ -65,9 +65,5 @@ pub fn summary(outcome: &Outcome, written: &[PathBuf]) -> String {
 /// The samples a pixel: one number, or, where pixels have different ones, the least, the most and the mean.
 pub fn samples_of(film: &Film, mean: f64) -> String {
     let (least, most) = (film.least_samples(), film.most_samples());
-    if least == most {
-        (f64::from(least).max(mean)).round().to_string()
-    } else {
-        format!("{least} to {most}, in the mean {mean:.0},")
-    }
+    if least == most { format!("{mean:.0}") } else { format!("{least} to {most}, in the mean {mean:.0},") }
 }

@@ -137,18 +137,8 @@ impl File<'_> {
 
     /// Where one with a profile is, where it looks, what is up, and its factor.
     fn photometric(&self, table: &Spanned<LuminaireEntry>) -> Result<(DVec3, Vec3, Option<Vec3>, Vec3)> {
-        let LuminaireEntry {
-            kind,
-            position,
-            intensity,
-            profile: _,
-            direction,
-            up,
-            inner_angle,
-            outer_angle,
-            irradiance,
-            angle,
-        } = table.get_ref();
+        let LuminaireEntry { kind, position, intensity, direction, up, .. } = table.get_ref();
+        let LuminaireEntry { inner_angle, outer_angle, irradiance, angle, .. } = table.get_ref();
         let nothing_else = matches!((inner_angle, outer_angle, irradiance, angle), (None, None, None, None));
         let (LuminaireKind::Point, Some(position), true) = (kind, position, nothing_else) else {
             return Err(self.error(
