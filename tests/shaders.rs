@@ -129,10 +129,7 @@ fn structures_are_laid_out_alike() {
 }
 
 /// Names of a module by their ids, and the numbers of one decoration.
-fn names_and_decorations(
-    module: &Module,
-    decoration: Decoration,
-) -> (HashMap<u32, String>, HashMap<u32, u32>) {
+fn names_and_decorations(module: &Module, decoration: Decoration) -> (HashMap<u32, String>, HashMap<u32, u32>) {
     let (mut names, mut numbers) = (HashMap::new(), HashMap::new());
     for i in module.debug_names.iter().chain(&module.annotations) {
         match (i.class.opcode, i.operands.as_slice()) {

@@ -226,4 +226,12 @@ impl EstimatorChanges {
             max_bounces: self.max_bounces.or(estimator.max_bounces),
         }
     }
+
+    /// Which of these parts, by their keys, change nothing of the estimator that came of them: how luminaires are sampled, where they are not.
+    pub fn without_effect(&self, applied: &Estimator) -> impl Iterator<Item = &'static str> {
+        let unsampled = applied.light_sampling == LightSampling::None;
+        [("area_sampling", self.area_sampling.is_some()), ("light_choice", self.light_choice.is_some())]
+            .into_iter()
+            .filter_map(move |(key, given)| (given && unsampled).then_some(key))
+    }
 }

@@ -104,6 +104,18 @@ fn estimators_by_name_and_by_parts() {
 }
 
 #[test]
+fn what_an_estimator_ignores_is_named() {
+    let warnings = |lines: &str| {
+        let warnings = tables(&format!("[integrator]\n{lines}")).warnings;
+        warnings.iter().filter(|warning| warning.contains("does not sample luminaires")).count()
+    };
+    assert_eq!(warnings("light_sampling = \"none\"\nlight_choice = \"tree\"\narea_sampling = \"area\"\n"), 2);
+    assert_eq!(warnings("estimator = \"no-light-sampling\"\nlight_choice = \"auto\"\n"), 1);
+    assert_eq!(warnings("estimator = \"no-light-sampling\"\n"), 0);
+    assert_eq!(warnings("light_choice = \"tree\"\narea_sampling = \"area\"\n"), 0);
+}
+
+#[test]
 fn estimators_that_make_no_sense() {
     let fails = |text: &str, at, words: &[&str]| toml_fails(&format!("[integrator]\n{text}\n"), at, words);
     fails("estimator = \"photon\"", (2, 13), &["`photon`", "`simple`, `default`", "`literal-extinction`"]);

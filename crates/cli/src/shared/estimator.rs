@@ -156,6 +156,13 @@ impl EstimatorOptions {
                 if !estimator.ends() {
                     return Err(Error::Usage("without extinction a path never ends: add --max-bounces".into()));
                 }
+                let changes = self.changes();
+                let idle = changes.without_effect(estimator).map(|key| format!("--{}", key.replace('_', "-")));
+                let idle = idle.collect::<Vec<_>>().join(" and ");
+                if !idle.is_empty() {
+                    warning =
+                        Some(format!("{idle}: without effect, because this estimator does not sample luminaires"));
+                }
             }
             Integrator::Simple { .. } => {
                 if let Some(option) = self.path_option() {
@@ -182,6 +189,16 @@ mod tests {
         options.check()?;
         let warning = options.change(&mut integrator)?;
         Ok((integrator, warning.is_some()))
+    }
+
+    #[test]
+    fn options_without_effect_are_named() {
+        let path = Integrator::Path(Estimator::default());
+        let warned = |words: &[&str]| applied(words, path).unwrap().1;
+        assert!(warned(&["--light-sampling", "none", "--light-choice", "tree"]));
+        assert!(warned(&["--area-sampling", "area", "--estimator", "no-light-sampling"]));
+        assert!(!warned(&["--light-choice", "tree", "--area-sampling", "area"]));
+        assert!(!warned(&["--light-sampling", "none"]));
     }
 
     #[test]

@@ -59,7 +59,8 @@ impl File<'_> {
             (Some(true), None) => Some(GroundTable::default()),
         };
         let film = self.film(file.film)?;
-        let integrator = self.integrator(&file.integrator.take().unwrap_or_default())?;
+        let mut warnings = Vec::new();
+        let integrator = self.integrator(&file.integrator.take().unwrap_or_default(), &mut warnings)?;
         // What is wrong in this file is said before any other file is read.
         let cameras = self.cameras(file.sensor.as_ref(), None)?;
         for table in &file.luminaire {
@@ -67,6 +68,7 @@ impl File<'_> {
         }
         let mut loader = Loader::new(self.materials(&file.material)?);
         loader.files.push(self.path.to_owned());
+        loader.warnings.append(&mut warnings);
         if let Some(image) = file.environment.as_ref().and_then(|table| table.get_ref().image.as_ref()) {
             loader.files.extend(Some(self.beside(image.get_ref())).filter(|path| path.is_file()));
         }

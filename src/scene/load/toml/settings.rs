@@ -157,8 +157,8 @@ impl File<'_> {
         Ok(Some(Environment { radiance, image: image.map(Arc::new), rotation }))
     }
 
-    /// The `[integrator]`.
-    pub(super) fn integrator(&self, table: &IntegratorTable) -> Result<Integrator> {
+    /// The `[integrator]`; what it asks for in vain is a warning.
+    pub(super) fn integrator(&self, table: &IntegratorTable, warnings: &mut Vec<String>) -> Result<Integrator> {
         let preset = table.estimator.as_ref();
         let simple_preset = preset.is_some_and(|name| name.get_ref() == "simple");
         let kind = table.kind.as_ref().map(|kind| *kind.get_ref());
@@ -190,7 +190,7 @@ impl File<'_> {
                 self.error(name.span(), message)
             })?,
         };
-        let estimator = EstimatorChanges {
+        let changes = EstimatorChanges {
             light_sampling: table.light_sampling.as_ref().map(|part| *part.get_ref()),
             area_sampling: table.area_sampling.as_ref().map(|part| *part.get_ref()),
             light_choice: table.light_choice.as_ref().map(|part| *part.get_ref()),
@@ -198,8 +198,12 @@ impl File<'_> {
             extinction: table.extinction.as_ref().map(|part| *part.get_ref()),
             albedo_threshold: table.albedo_threshold.as_ref().map(|part| part.get_ref().0),
             max_bounces: table.max_bounces.as_ref().map(|part| part.get_ref().0),
+        };
+        let estimator = changes.apply(estimator);
+        for key in changes.without_effect(&estimator) {
+            let why = "without effect, because this estimator does not sample luminaires";
+            warnings.push(self.warning(&format!("[integrator] `{key}`: {why}")));
         }
-        .apply(estimator);
         if !estimator.ends() {
             let span = table.extinction.as_ref().map_or(0..0, Spanned::span);
             return Err(self.error(span, "without extinction a path never ends: add `max_bounces`"));
