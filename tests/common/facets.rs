@@ -151,7 +151,7 @@ pub fn grid(roughnesses: &[f32], degrees: &[f64]) -> Vec<Sampled> {
             }
             add(
                 "sheet".into(),
-                Physical { transmission: 0.8, metallic: 0.2, base_color: Vec3::new(0.9, 0.5, 0.1), ..rough.clone() },
+                Physical { transmission: 1.0, metallic: 0.2, base_color: Vec3::new(0.9, 0.5, 0.1), ..rough.clone() },
                 true,
                 true,
             );
