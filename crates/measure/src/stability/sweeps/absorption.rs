@@ -31,7 +31,7 @@ const LEFT: f32 = 0.367_879_44;
 const EYE: Vec3 = Vec3::new(0.4, 1.0, 0.2);
 
 fn run(bench: &Workbench) -> Result<Sweep> {
-    sweep(bench, &decades(-6, 6, bench), if bench.long { 1 << 17 } else { 1 << 14 })
+    sweep(bench, &decades(-6, 6, bench), if bench.long { 1 << 16 } else { 1 << 13 })
 }
 
 /// A body in white light, and the radiance that the camera sees.
