@@ -135,9 +135,11 @@ pub fn grid(roughnesses: &[f32], degrees: &[f64]) -> Vec<Sampled> {
                 all.push(Sampled { name, physical, thin, front, wo, ggx });
             };
             let rough = Physical { roughness, ..Physical::default() };
-            for anisotropy in [0.0, 0.3, 1.0] {
-                let name = format!("metal, anisotropy {anisotropy}");
-                add(name, Physical { metallic: 1.0, anisotropy, ..rough.clone() }, false, true);
+            add("metal".into(), Physical { metallic: 1.0, ..rough.clone() }, false, true);
+            for anisotropy in [0.3, 1.0] {
+                // So dark that nothing is reflected twice: that would be a wide lobe, which is narrow in these cells.
+                let dark = Physical { base_color: Vec3::ZERO, specular: 1e-3, anisotropy, ..rough.clone() };
+                add(format!("brushed by {anisotropy}"), dark, false, true);
             }
             for ior in [1.05, 1.5, 2.4] {
                 for front in [true, false] {
