@@ -43,9 +43,9 @@ pub fn measure(bench: &Workbench, effort: Effort, tables: &Folder, texts: &mut T
     let rows = KINDS.iter().zip(all.chunks(ROUGHNESSES.len())).map(row);
     texts.insert("furnaces", report::Table::new(columns).with_rows(rows).markdown());
     let metals = white_metal(bench, 16 * samples)?;
-    let holds = metals.iter().all(|metal| (metal.found.mean - 1.0).abs() <= WITHIN);
+    let holds = metals.iter().all(|metal| (metal.found - 1.0).abs() <= WITHIN);
     let each = metals.iter().map(|metal| {
-        let off = deviation(metal.found.mean - 1.0, metal.found.error);
+        let off = format!("{:+.2} %", 100.0 * (metal.found - 1.0));
         format!("{} {off} (roughness {}, {} degrees)", metal.backend, metal.roughness, metal.degrees)
     });
     let promise = if holds { "within 0.5 % of 1 everywhere" } else { "**not within 0.5 % of 1**" };
