@@ -14,7 +14,7 @@ const NARROWEST: f64 = 1e-4;
 const GRAZING: f64 = 1e-6;
 
 /// The mean of a function of the microfacets that are seen at a cosine from the normal, by the midpoint rule with `n^2` of them. They lie about the plane of
-/// incidence alike on both sides.
+/// incidence alike on both sides. Of narrow distributions only the few that are tilted most send light to other microfacets: they are taken more densely.
 fn mean_of_visible<const N: usize>(
     alpha: f64,
     cosine: f64,
@@ -23,15 +23,17 @@ fn mean_of_visible<const N: usize>(
 ) -> [f64; N] {
     let ggx = Ggx { x: alpha, y: alpha };
     let wo = DVec3::new((1.0 - cosine * cosine).max(0.0).sqrt(), 0.0, cosine);
-    let mut sums = [0.0; N];
+    let (mut sums, mut weights) = ([0.0; N], 0.0);
     for i in 0..n {
         for j in 0..n {
-            let [u, v] = [i, j].map(|i| (f64::from(i) + 0.5) / f64::from(n));
+            let [u, t] = [i, j].map(|i| (f64::from(i) + 0.5) / f64::from(n));
+            let (v, weight) = (1.0 - (1.0 - t).powi(3), 3.0 * (1.0 - t).powi(2));
             let one = of(&ggx, wo, ggx.visible_normal(wo, 0.5 * u, v));
-            sums.iter_mut().zip(one).for_each(|(sum, one)| *sum += one);
+            sums.iter_mut().zip(one).for_each(|(sum, one)| *sum += weight * one);
+            weights += weight;
         }
     }
-    sums.map(|sum| sum / f64::from(n * n))
+    sums.map(|sum| sum / weights)
 }
 
 /// What of the light that a microfacet reflects meets another one.

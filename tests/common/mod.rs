@@ -3,6 +3,7 @@
 
 pub mod devices;
 pub mod directions;
+pub mod facets;
 pub mod lamps;
 pub mod many_lamps;
 pub mod scenes;

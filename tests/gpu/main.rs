@@ -11,6 +11,7 @@ mod coats;
 mod densities;
 mod error_bar;
 mod estimators;
+mod facets;
 mod fallback;
 mod features;
 mod files;

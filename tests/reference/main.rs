@@ -8,6 +8,7 @@ mod directed;
 mod environment;
 mod estimators;
 mod exposure;
+mod facets;
 mod impulses;
 mod intersection;
 mod light;

@@ -6,6 +6,7 @@ pub mod calibration;
 pub mod chart;
 pub mod closed_forms;
 pub mod flip;
+pub mod furnaces;
 pub mod heat_map;
 pub mod intersect_f32;
 pub mod metrics;

@@ -13,7 +13,10 @@ use luminaire::scene::build::{add, empty, lamp, matte, quad};
 use luminaire::scene::{Estimator, Integrator, LightChoice, LuminaireTable, SampledLuminaire};
 use luminaire_measure::chart::{Chart, Series};
 use luminaire_measure::stability::Sweep;
-use luminaire_measure::stability::sweeps::{caustics, edge_on, glossy, glossy_caustics, luminaire as lamps, spot};
+use luminaire_measure::stability::sweeps::{
+    absorption, anisotropy, caustics, edge_on, glossy, glossy_caustics, luminaire as lamps, rough_index, roughness,
+    spot,
+};
 use std::f64::consts::TAU;
 
 fn chart<'a>(sweep: &'a Sweep, name: &str) -> &'a Chart {
@@ -57,6 +60,48 @@ fn glossy_plates() {
             assert!(roulette.y <= 1.1 * both.y, "{size} lamp, exponent {x:e}: {} with, {} without", roulette.y, both.y);
         }
     }
+}
+
+/// From rough to a mirror a white metal sends back all of an even sky, a dark plate the light of lamps that its formulas say, and the defaults are nowhere noisy.
+#[test]
+fn plates_of_microfacets() {
+    let sweep = roughness::sweep(&bench(), &[1.0, 0.2, 0.03, 1e-3, 1e-6], 1 << 13).expect("the sweep runs");
+    assert_all_found(&chart(&sweep, "energy").series.iter().collect::<Vec<_>>(), 2e-3, 0.02);
+    for size in ["small", "middling", "large"] {
+        let noise = series(chart(&sweep, &format!("noise-{size}-lamp")), "both, with roulette");
+        assert!(noise.points.iter().all(|p| p.y < 0.5), "{size}: {noise:?}");
+    }
+}
+
+/// Brushed up to 1 : 1e4 a plate gives the light of a lamp that its formulas say; a white one is within a tenth of white.
+#[test]
+fn brushed_plates() {
+    let sweep = anisotropy::sweep(&bench(), &[1.0, 10.0, 1e4], 1 << 13).expect("the sweep runs");
+    let energy = chart(&sweep, "energy");
+    let (white, dark): (Vec<_>, Vec<_>) = energy.series.iter().partition(|s| s.name.starts_with("white"));
+    assert_all_found(&dark, 2e-3, 0.1);
+    for (series, p) in white.iter().flat_map(|series| series.points.iter().map(move |p| (series, p))) {
+        let error = p.error.expect("it varies");
+        assert!(error < 0.01 && (0.9 - 4.0 * error..1.03 + 4.0 * error).contains(&p.y), "{}: {p:?}", series.name);
+    }
+}
+
+/// Rough glass of every index from both sides, and metals whose index goes through 1, are what they are expected to be.
+#[test]
+fn indices_through_one() {
+    let steps = rough_index::Steps { glass: vec![1.5, 1.03, 1.0], metal: vec![2.0, 1.001, 1.0, 0.2], samples: 1 << 13 };
+    let sweep = rough_index::sweep(&bench(), &steps).expect("the sweep runs");
+    assert_all_found(&chart(&sweep, "energy").series.iter().collect::<Vec<_>>(), 3e-3, 0.03);
+    for line in &chart(&sweep, "metal").series {
+        assert!(line.points.iter().all(|p| (p.y - 1.0).abs() < 1e-6), "{line:?}");
+    }
+}
+
+/// Bodies absorb by their length, from a millionth of their thickness to a million of it, seen from outside and from inside.
+#[test]
+fn bodies_from_black_to_clear() {
+    let sweep = absorption::sweep(&bench(), &[1e-6, 0.1, 1.0, 1e6], 1 << 13).expect("the sweep runs");
+    assert_all_found(&chart(&sweep, "energy").series.iter().collect::<Vec<_>>(), 2e-6, 0.02);
 }
 
 /// Lambert's formula holds from a ten-thousandth of a lamp's side to a million of them, and the default estimator is never noisy; by area

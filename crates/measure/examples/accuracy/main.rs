@@ -9,6 +9,7 @@
 mod calibration;
 mod closed_forms;
 mod estimators;
+mod furnaces;
 mod kernel;
 mod tables;
 
@@ -62,6 +63,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         ("setting", effort.of([" (`--quick`)", "", " (`LONG=1`)"]).into()),
     ]);
     closed_forms::measure(&bench, effort, &images, &tables, &mut texts)?;
+    furnaces::measure(&bench, effort, &tables, &mut texts)?;
     calibration::measure(&bench, effort, &images, &tables, &mut texts)?;
     kernel::measure(&bench, effort, &tables, &mut texts)?;
     estimators::measure(&bench, effort, &tables, &mut texts)?;

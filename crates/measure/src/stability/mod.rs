@@ -7,6 +7,7 @@ mod lamp;
 mod light;
 mod limits;
 mod page;
+mod plate;
 mod rooms;
 mod sweep;
 pub mod sweeps;
@@ -31,6 +32,10 @@ pub const SWEEPS: &[Definition] = &[
     sweeps::eta::DEFINITION,
     sweeps::touching_glass::DEFINITION,
     sweeps::glossy::DEFINITION,
+    sweeps::roughness::DEFINITION,
+    sweeps::anisotropy::DEFINITION,
+    sweeps::rough_index::DEFINITION,
+    sweeps::absorption::DEFINITION,
     sweeps::luminaire::DEFINITION,
     sweeps::edge_on::DEFINITION,
     sweeps::spot::DEFINITION,
