@@ -226,12 +226,13 @@ def materials(arguments):
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
         mitsuba_materials.meshes(folder)
-        for name, plugin, taken, keys, description in found:
+        for number, (name, plugin, taken, keys, description) in enumerate(found):
             print(f"\n{name}: {plugin}, {taken}", flush=True)
             mitsuba_materials.write_ours(folder / "ours.toml", keys, size)
             scene = mitsuba_materials.theirs(folder, description, size)
             ours, their = [], []
-            for seed in seeds:
+            # Each material has seeds of its own, so that the answers are independent.
+            for seed in (10000 * (number + 1) + seed for seed in seeds):
                 picture = folder / f"ours-{seed}.exr"
                 command = [arguments.luminaire, "render", str(folder / "ours.toml"), "--spp", str(spp), "--seed", str(seed), "-o", str(picture), "--quiet"]
                 subprocess.run([*command, *arguments.option], check=True)
