@@ -302,7 +302,7 @@ def main():
     arguments = parser.parse_args()
     try:
         sys.exit(arguments.run(arguments))
-    except (OSError, RuntimeError, ValueError) as error:
+    except (OSError, RuntimeError, ValueError, subprocess.SubprocessError) as error:
         sys.exit(f"{parser.prog}: {error}")
 
 

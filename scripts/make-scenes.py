@@ -810,9 +810,10 @@ def frosted(out):
 
 
 def liquid(out):
-    stage = Obj("A bright backdrop.")
-    stage.part("backdrop", "backdrop", sweep(24, 10, 9, 3, 24).move(0, 0, -1.4))
-    stage.write(out / "liquid" / "stage.obj", smooth=("backdrop",))
+    stage = Obj("A table, and a bright panel behind it.")
+    stage.part("table", "table", quad((-12, 0, 10), (12, 0, 10), (12, 0, -4), (-12, 0, -4)))
+    stage.part("panel", "panel", quad((-7, 0, -4), (7, 0, -4), (7, 6, -4), (-7, 6, -4)))
+    stage.write(out / "liquid" / "stage.obj")
 
     def filled(name, comment, dry, wet, dye):
         """A glass whose faces are: those to air; those to the liquid, which are modelled once; the liquid's own surface; and the dye in it."""
@@ -849,8 +850,8 @@ def liquid(out):
 def brushed(out):
     stage = Obj("A table before a wall, and a lamp on each side.")
     stage.part("table", "table", sweep(24, 9, 8, 2.5, 16).move(0, 0, -1.6))
-    stage.part("left", "left", quad((-0.6, -2, 0), (0.6, -2, 0), (0.6, 2, 0), (-0.6, 2, 0)).turn("x", 20).turn("y", 130).move(-4.6, 3.4, 3.4))
-    stage.part("right", "right", quad((-1.1, -1.1, 0), (1.1, -1.1, 0), (1.1, 1.1, 0), (-1.1, 1.1, 0)).turn("x", 40).turn("y", -140).move(3.6, 4.8, 2.6))
+    stage.part("left", "left", quad((-0.35, -1.6, 0), (0.35, -1.6, 0), (0.35, 1.6, 0), (-0.35, 1.6, 0)).turn("x", 20).turn("y", 130).move(-4.6, 3.2, 3.2))
+    stage.part("right", "right", quad((-0.3, -1, 0), (0.3, -1, 0), (0.3, 1, 0), (-0.3, 1, 0)).turn("x", 40).turn("y", 180).move(1.1, 5.4, 5.2))
     stage.write(out / "brushed" / "stage.obj", smooth=("table",))
     bevel = 0.03
     pot = [(0, 0.002), (0.98, 0.002), (1.0, bevel), (1.0, 1.02), (0.985, 1.04), (0.96, 1.04), (0.95, 1.02), (0.95, 0.1), (0, 0.1)]
@@ -871,10 +872,11 @@ def brushed(out):
 
 def car_paint(out):
     folder = out / "car-paint"
-    stage = Obj("A backdrop, and three long lamps over it.")
+    stage = Obj("A backdrop, and four long lamps, three over it and one behind.")
     stage.part("backdrop", "backdrop", sweep(40, 14, 12, 4, 24).move(0, 0, -3))
     for name, x in (("left", -3.4), ("middle", 0), ("right", 3.4)):
         stage.part(name, name, quad((x - 0.5, 4.6, -3), (x + 0.5, 4.6, -3), (x + 0.5, 4.3, 4), (x - 0.5, 4.3, 4)))
+    stage.part("back", "back", quad((-4.5, 2.5, -5), (4.5, 2.5, -5), (4.5, 3.2, -5.2), (-4.5, 3.2, -5.2)))
     stage.write(folder / "stage.obj", smooth=("backdrop",))
     car = Obj("A toy car, 3 long: it looks along +x and stands on the origin.")
     car.part("body", "paint", join([cushion((1.5, 0.3, 0.66), (0.55, 0.5), 64, 20).move(0, 0.58, 0),
