@@ -225,7 +225,7 @@ def compensated(plugin, average, x, y=None, ior=0.0):
 
 def cases():
     """(name, Mitsuba's plugin and how it was taken, keys of luminaire's material, Mitsuba's description)."""
-    as_it_is, with_missing = "as it is", "masking, compensation"
+    as_it_is, with_missing = "as it is", "with masking and compensation"
     averages = {}
     cosines = np.linspace(0, 1, 2049) ** 2
     for name, (eta, k) in (("gold", GOLD), ("copper", COPPER)):
@@ -249,7 +249,7 @@ def cases():
         y = roughness**2
         x = y + (1 - y) * anisotropy**2
         keys = f'conductor = "copper"\nroughness = {roughness}\nanisotropy = {anisotropy}'
-        found.append((f"copper {roughness}, anisotropy {anisotropy}", "roughconductor", with_missing, keys,
+        found.append((f"copper {roughness} brushed {anisotropy}", "roughconductor", with_missing, keys,
                       compensated(metal("copper", COPPER, x, y), averages["copper"], x, y)))  # fmt: skip
     for roughness in (0.1, 0.3, 0.6):
         keys = f"base_colour = [1, 1, 1]\ntransmission = 1\nior = 1.5\nroughness = {roughness}"
@@ -257,22 +257,22 @@ def cases():
             found.append((f"glass {roughness}", "roughdielectric", as_it_is, keys, glass(roughness**2)))
         found.append((f"glass {roughness}", "roughdielectric", with_missing, keys, compensated(glass(roughness**2), glass_average, roughness**2, ior=1.5)))
     base = [0.9, 0.6, 0.3]
-    found.append(("metal of a base colour 0.3", "principled, metallic 1", with_missing, f"base_colour = {base}\nmetallic = 1\nroughness = 0.3",
+    found.append(("metal of a base colour 0.3", "principled (metallic 1)", with_missing, f"base_colour = {base}\nmetallic = 1\nroughness = 0.3",
                   compensated({"type": "principled", "base_color": rgb(base), "metallic": 1.0, "roughness": 0.3, "specular": 0.5},
                               np.array(base) + (1 - np.array(base)) / 21, 0.09)))  # fmt: skip
-    found.append(("glass 0.3", "principled, spec_trans 1", with_missing, "base_colour = [1, 1, 1]\ntransmission = 1\nior = 1.5\nroughness = 0.3",
+    found.append(("glass 0.3", "principled (spec_trans 1)", with_missing, "base_colour = [1, 1, 1]\ntransmission = 1\nior = 1.5\nroughness = 0.3",
                   compensated({"type": "principled", "base_color": rgb([1, 1, 1]), "spec_trans": 1.0, "roughness": 0.3, "eta": 1.5},
                               glass_average, 0.09, ior=1.5)))  # fmt: skip
     colour, distance = [0.8, 0.5, 0.2], 0.7
-    found.append(("absorbing glass 0", "dielectric, homogeneous", as_it_is,
+    found.append(("glass 0 that absorbs", "dielectric and homogeneous", as_it_is,
                   f"base_colour = [1, 1, 1]\ntransmission = 1\nior = 1.5\nroughness = 0\nattenuation_colour = {colour}\nattenuation_distance = {distance}",
                   {"type": "dielectric", "int_ior": 1.5, "ext_ior": 1.0, "absorption": [-math.log(c) / distance for c in colour]}))  # fmt: skip
     # The plugin divides by what its polynomial says of internal reflection, by which the body is 0.12 % too bright at 1.5; that is taken back.
     paint = [0.7, 0.2, 0.1]
     undone = 1.5**2 * (1 - float(mi.fresnel_diffuse_reflectance(mi.Float(1 / 1.5))[0])) / (1 - glass_average)
-    found.append(("plastic 0", "plastic, nonlinear false", "its polynomial undone", f"base_colour = {paint}\nior = 1.5\nroughness = 0",
+    found.append(("plastic 0", "plastic (nonlinear false)", "its polynomial undone", f"base_colour = {paint}\nior = 1.5\nroughness = 0",
                   {"type": "plastic", "int_ior": 1.5, "ext_ior": 1.0, "diffuse_reflectance": rgb(np.array(paint) * undone), "nonlinear": False}))  # fmt: skip
-    found.append(("pane, transmission and eta", "thindielectric", as_it_is, "transmission = [1, 1, 1]\neta = 1.5\nthin = true",
+    found.append(("pane of the lecture", "thindielectric", as_it_is, "transmission = [1, 1, 1]\neta = 1.5\nthin = true",
                   {"type": "thindielectric", "int_ior": 1.5, "ext_ior": 1.0}))  # fmt: skip
     return found
 
