@@ -127,8 +127,8 @@ class Compensated(mi.BSDF):
         self.missing = mi.Float(np.ascontiguousarray(missing.ravel(), dtype=np.float32))
         self.again = mi.Color3f([float(v) for v in (1 - wide) * multiple])
         self.lobe = mi.Color3f([float(v) for v in wide * multiple / (math.pi * missing_average)])
-        # The share of paths that look for the lobe of later reflections.
-        self.share = 0.25 if wide > 0 else 0.0
+        # The share of paths that look for the lobe of later reflections. Inside, where it is none, no path must: many bounces would multiply what that costs.
+        self.share = 0.1 if wide > 0 else 0.0
         if self.dielectric:
             through = (1 - table[:, 1] - missing * multiple[0]) / np.maximum(table[:, 2], 1e-9)
             back = np.array([once(mu, round_width, 1 / ior) for mu in grid()])
@@ -182,7 +182,8 @@ class Compensated(mi.BSDF):
             result = dr.select(same & front, reflected + added, 0.0)
         cosine = dr.select(same, dr.abs(wo.z) / dr.pi, 0.0)
         ok = active & (wi.z != 0) & (wo.z != 0)
-        return dr.select(ok, result, 0.0), dr.select(ok, (1 - self.share) * pdf + self.share * cosine, 0.0)
+        share = dr.select(front, self.share, 0.0)
+        return dr.select(ok, result, 0.0), dr.select(ok, (1 - share) * pdf + share * cosine, 0.0)
 
     def eval(self, ctx, si, wo, active=True):
         return self.both(ctx, si, wo, active)[0]
@@ -194,8 +195,9 @@ class Compensated(mi.BSDF):
         return self.both(ctx, si, wo, active)
 
     def sample(self, ctx, si, sample1, sample2, active=True):
-        even_lobe = sample1 < self.share
-        sample, weight = self.nested.sample(ctx, si, dr.clip((sample1 - self.share) / (1 - self.share), 0, 0.99999994), sample2, active & ~even_lobe)
+        share = dr.select(si.wi.z > 0, mi.Float(self.share), 0.0)
+        even_lobe = sample1 < share
+        sample, weight = self.nested.sample(ctx, si, dr.clip((sample1 - share) / (1 - share), 0, 0.99999994), sample2, active & ~even_lobe)
         wo = mi.warp.square_to_cosine_hemisphere(sample2)
         wo.z *= dr.select(si.wi.z < 0, -1.0, 1.0)
         sample.wo = dr.select(even_lobe, wo, sample.wo)
