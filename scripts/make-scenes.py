@@ -873,7 +873,7 @@ def brushed(out):
 def car_paint(out):
     folder = out / "car-paint"
     stage = Obj("A backdrop, and four long lamps, three over it and one behind.")
-    stage.part("backdrop", "backdrop", sweep(40, 14, 12, 4, 24).move(0, 0, -3))
+    stage.part("backdrop", "backdrop", sweep(28, 14, 9, 4, 10).move(0, 0, -3))
     for name, x in (("left", -3.4), ("middle", 0), ("right", 3.4)):
         stage.part(name, name, quad((x - 0.5, 4.6, -3), (x + 0.5, 4.6, -3), (x + 0.5, 4.3, 4), (x - 0.5, 4.3, 4)))
     stage.part("back", "back", quad((-4.5, 2.5, -5), (4.5, 2.5, -5), (4.5, 3.2, -5.2), (-4.5, 3.2, -5.2)))

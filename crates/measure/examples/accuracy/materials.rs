@@ -18,7 +18,7 @@ const COLUMNS: [&str; 15] = [
     "R_error",
     "G_error",
     "B_error",
-    "blocks",
+    "tests",
     "largest_z",
     "median_of_largest_z",
     "mean_z2",
