@@ -57,7 +57,7 @@ pub fn read(texts: &mut Texts) -> Result<(), Box<dyn Error>> {
     texts.extend([
         ("materials", table.markdown()),
         ("materials-about", about.to_owned()),
-        ("materials-least", format!("{} ({}), corrected for {count} rows {corrected:.2}", least.0, least.1)),
+        ("materials-least", format!("{} ({}), corrected for {count} rows {corrected:.3}", least.0, least.1)),
     ]);
     Ok(())
 }
