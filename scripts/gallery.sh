@@ -32,6 +32,11 @@ lens                   lens/lens.toml                640 192
 orthographic           lens/orthographic.toml        640 96
 textures               textures/textures.toml        640 160
 environment            environment/environment.toml  640 256
+metals                 metals/metals.toml            640 128
+brushed                brushed/brushed.toml          640 128
+car-paint              car-paint/car-paint.toml      640 128
+frosted                frosted/frosted.toml          640 128
+liquid                 liquid/liquid.toml            640 128
 many-lights            many-lights/many-lights.toml  640 320
 plates-direct          plates/plates.toml            288 64   --light-sampling direct
 plates-none            plates/plates.toml            288 64   --light-sampling none

@@ -167,6 +167,46 @@ def lathe(profile, n):
     return Shape(points, [face for face in faces if len(face) > 2])
 
 
+def turned(profile, n):
+    """As `lathe`, with a seam at -z and texture coordinates: u goes around the axis, v along the profile."""
+    points, uvs, faces = [], [], []
+    for j, (radius, height) in enumerate(profile):
+        for i in range(n + 1):
+            angle = TAU * (i / n + 0.5)
+            points.append((radius * math.sin(angle), height, radius * math.cos(angle)))
+            uvs.append((i / n, j / (len(profile) - 1)))
+    for j in range(len(profile) - 1):
+        for i in range(n):
+            low, high = j * (n + 1) + i, (j + 1) * (n + 1) + i
+            face = [low, low + 1, high + 1, high]
+            # At a pole two corners are one; the one in the middle of its triangle is left.
+            if profile[j][0] == 0:
+                face = [low, high + 1, high]
+            elif profile[j + 1][0] == 0:
+                face = [low, low + 1, high]
+            faces.append(face)
+    return Shape(points, faces, uvs)
+
+
+def cushion(size, roundness, n, m):
+    """A superellipsoid of half the edges `size`: `roundness` 1 is an ellipsoid, less is nearer to a box (upright, and seen from above)."""
+    def power(x, e):
+        return math.copysign(abs(x) ** e, x)
+
+    up, around = roundness
+    profile = [(power(math.cos(a), up), power(math.sin(a), up)) for a in (math.pi * (j / m - 0.5) for j in range(m + 1))]
+    profile[0], profile[-1] = (0, -1), (0, 1)
+    shape = lathe(profile, n)
+
+    def square(p):
+        r = math.hypot(p[0], p[2])
+        if r == 0:
+            return p
+        return (r * power(p[0] / r, around), p[1], r * power(p[2] / r, around))
+
+    return shape.map(square).scale(*size)
+
+
 def tube(path, radius, n, closed=False):
     """A round tube along a path, its ends shut unless the path is closed."""
     count = len(path)
@@ -290,8 +330,9 @@ def unfolded(face, points):
 class Obj:
     """An OBJ file: parts, each a name, a material and a shape."""
 
-    def __init__(self, comment, library=None):
+    def __init__(self, comment, library=None, textured=False):
         self.comment, self.library, self.parts = comment, library, []
+        self.textured = textured or library is not None
 
     def part(self, name, material, shape):
         self.parts.append((name, material, shape))
@@ -305,7 +346,7 @@ class Obj:
         for name, material, shape in self.parts:
             lines += ["", f"o {name}"]
             lines += ["v " + " ".join(number(x) for x in p) for p in shape.points]
-            uvs = shape.uvs if self.library else None
+            uvs = shape.uvs if self.textured else None
             if uvs:
                 lines += ["vt " + " ".join(number(x) for x in uv) for uv in uvs]
             lines += [f"usemtl {material}"] if material else []
@@ -742,10 +783,123 @@ def spotlights(out):
     (out / "spotlights" / "wall-washer.ies").write_text("\n".join(lines + rows) + "\n")
 
 
+def metals(out):
+    stage = Obj("Three steps before a wall.")
+    stage.part("steps", "stage", join([box((-8, -2, -5), (8, 0.62 * i, 1.5 - 1.05 * i)) for i in range(3)]))
+    stage.part("wall", "stage", quad((-8, -2, -1.9), (8, -2, -1.9), (8, 7, -1.9), (-8, 7, -1.9)))
+    stage.write(out / "metals" / "stage.obj")
+    lamps = Obj("Two strips of light, above and to the left, and to the right.")
+    lamps.part("key", "key", quad((-1.3, -2.2, 0), (1.3, -2.2, 0), (1.3, 2.2, 0), (-1.3, 2.2, 0)).turn("x", 40).turn("y", 140).move(-4.6, 5.4, 5.5))
+    lamps.part("rim", "rim", quad((-0.5, -2.2, 0), (0.5, -2.2, 0), (0.5, 2.2, 0), (-0.5, 2.2, 0)).turn("y", -118).move(6.4, 2.8, 3.6))
+    lamps.write(out / "metals" / "lamps.obj")
+
+
+def frosted(out):
+    stage = Obj("A table before a wall, and the frames of three panes.")
+    stage.part("table", "table", quad((-9, 0, 9), (9, 0, 9), (9, 0, -3.2), (-9, 0, -3.2)))
+    stage.part("wall", "wall", quad((-9, 0, -3.2), (9, 0, -3.2), (9, 8, -3.2), (-9, 8, -3.2)))
+    frame = [box((-0.74, 0, -0.2), (0.74, 0.09, 0.2)), box((-0.7, 0.09, -0.1), (-0.66, 1.84, 0.1)), box((0.66, 0.09, -0.1), (0.7, 1.84, 0.1)), box((-0.7, 1.8, -0.1), (0.7, 1.84, 0.1))]
+    stage.part("frames", "frames", join([part.move(x, 0, 0) for part in frame for x in (-2.1, 0, 2.1)]))
+    stage.write(out / "frosted" / "stage.obj")
+    sheet = Obj("A sheet without a thickness, 1.3 wide and 1.7 high, upright.")
+    sheet.part("sheet", None, quad((-0.65, 0, 0), (0.65, 0, 0), (0.65, 1.7, 0), (-0.65, 1.7, 0)))
+    sheet.write(out / "frosted" / "sheet.obj")
+    slab = Obj("The same as a slab of 0.16.")
+    slab.part("slab", None, box((-0.65, 0, -0.08), (0.65, 1.7, 0.08)))
+    slab.write(out / "frosted" / "slab.obj")
+
+
+def liquid(out):
+    stage = Obj("A table, and a bright panel behind it.")
+    stage.part("table", "table", quad((-12, 0, 10), (12, 0, 10), (12, 0, -4), (-12, 0, -4)))
+    stage.part("panel", "panel", quad((-7, 0, -4), (7, 0, -4), (7, 6, -4), (-7, 6, -4)))
+    stage.write(out / "liquid" / "stage.obj")
+
+    def filled(name, comment, dry, wet, dye):
+        """A glass whose faces are: those to air; those to the liquid, which are modelled once; the liquid's own surface; and the dye in it."""
+        glass = Obj(comment)
+        dry = [p for p, before in zip(dry, [None] + dry) if p != before]
+        glass.part("dry", "glass", lathe(dry, 96))
+        glass.part("wet", "glass to liquid", lathe(wet, 96))
+        glass.part("surface", "liquid", lathe([wet[0], (0, wet[0][1])], 96))
+        glass.write(out / "liquid" / f"{name}.obj")
+        inside = Obj("What is dissolved in the liquid: nearly all of it, a hair away from the glass and the surface.")
+        inside.part("dye", None, lathe(dye, 96))
+        inside.write(out / "liquid" / f"{name}-dye.obj")
+
+    def arc(x, y, r, first, last, n=6):
+        """Part of a circle in the plane of the profile, from one angle to another; 0 is outwards, 90 up."""
+        angles = [math.radians(first + (last - first) * i / n) for i in range(n + 1)]
+        return [(x + r * math.cos(a), y + r * math.sin(a)) for a in angles]
+
+    h = 0.002
+    level = 1.02
+    filled("tumbler", "A tumbler with a thick bottom, 1.4 high, and what it is filled with. It stands 0.002 above its origin.",
+           [(0, 0.002)] + arc(0.43, 0.062, 0.06, -90, 0) + arc(0.468, 1.38, 0.022, 0, 180) + [(0.446, level)],
+           [(0.446, level)] + arc(0.37, 0.236, 0.076, 0, -90) + [(0, 0.16)],
+           [(0, 0.16 + h)] + arc(0.37, 0.236, 0.076 - h, -90, 0) + [(0.446 - h, level - h), (0, level - h)])
+    rim, tip, level = (0.74, 1.5), 0.86, 1.36
+    slope = (rim[0] - 0.012) / (rim[1] - tip)
+    at = lambda y: slope * (y - tip)
+    filled("cocktail", "A cocktail glass, 1.5 high, and what it is filled with. It stands 0.002 above its origin.",
+           [(0, 0.002)] + arc(0.44, 0.014, 0.012, -90, 70) + [(0.3, 0.045), (0.12, 0.09), (0.055, 0.16), (0.04, 0.3), (0.038, 0.6), (0.05, 0.74), (0.09, 0.82)]
+           + arc(rim[0], rim[1], 0.012, -40, 140) + [(at(level), level)],
+           [(at(level), level), (0, tip)], [(0, tip + 3 * h), (at(level) - 2 * h, level - h), (0, level - h)])
+
+
+def brushed(out):
+    stage = Obj("A table before a wall, and a lamp on each side.")
+    stage.part("table", "table", sweep(24, 9, 8, 2.5, 16).move(0, 0, -1.6))
+    stage.part("left", "left", quad((-0.35, -1.6, 0), (0.35, -1.6, 0), (0.35, 1.6, 0), (-0.35, 1.6, 0)).turn("x", 20).turn("y", 130).move(-4.6, 3.2, 3.2))
+    stage.part("right", "right", quad((-0.3, -1, 0), (0.3, -1, 0), (0.3, 1, 0), (-0.3, 1, 0)).turn("x", 40).turn("y", 180).move(1.1, 5.4, 5.2))
+    stage.write(out / "brushed" / "stage.obj", smooth=("table",))
+    bevel = 0.03
+    pot = [(0, 0.002), (0.98, 0.002), (1.0, bevel), (1.0, 1.02), (0.985, 1.04), (0.96, 1.04), (0.95, 1.02), (0.95, 0.1), (0, 0.1)]
+    pan = Obj("A pot that was turned on a lathe, 1.04 high: u goes around its axis, along the grooves.", textured=True)
+    pan.part("pot", None, turned(pot, 120))
+    pan.write(out / "brushed" / "pot.obj")
+    lid = [(0, 0), (1.02, 0), (1.04, 0.02), (1.02, 0.05)] + [(r, 0.05 + 0.16 * (1 - (r / 1.02) ** 2)) for r in (0.9, 0.75, 0.6, 0.45, 0.3, 0.2, 0.12, 0.05, 0)]
+    cover = Obj("Its lid, turned, too, around +y.", textured=True)
+    cover.part("lid", None, turned(lid, 120))
+    cover.write(out / "brushed" / "lid.obj")
+    board = Obj("A plate that was brushed in straight lines along u, which is its x axis: 2.4 x 1.2, standing.", textured=True)
+    w, h, t = 1.2, 1.2, 0.05
+    board.part("plate", None, quad((-w, 0, t), (w, 0, t), (w, h, t), (-w, h, t)))
+    board.part("sides", None, Shape([(w, 0, t), (w, 0, -t), (w, h, -t), (w, h, t), (-w, h, t), (-w, h, -t), (-w, 0, -t), (-w, 0, t)],
+                                    [[0, 1, 2, 3], [3, 2, 5, 4], [4, 5, 6, 7], [1, 6, 5, 2]], [(0, 0), (1, 0), (1, 1), (0, 1), (0, 1), (1, 1), (1, 0), (0, 0)]))
+    board.write(out / "brushed" / "plate.obj")
+
+
+def car_paint(out):
+    folder = out / "car-paint"
+    stage = Obj("A backdrop, and four long lamps, three over it and one behind.")
+    stage.part("backdrop", "backdrop", sweep(28, 14, 9, 4, 10).move(0, 0, -3))
+    for name, x in (("left", -3.4), ("middle", 0), ("right", 3.4)):
+        stage.part(name, name, quad((x - 0.5, 4.6, -3), (x + 0.5, 4.6, -3), (x + 0.5, 4.3, 4), (x - 0.5, 4.3, 4)))
+    stage.part("back", "back", quad((-4.5, 2.5, -5), (4.5, 2.5, -5), (4.5, 3.2, -5.2), (-4.5, 3.2, -5.2)))
+    stage.write(folder / "stage.obj", smooth=("backdrop",))
+    car = Obj("A toy car, 3 long: it looks along +x and stands on the origin.")
+    car.part("body", "paint", join([cushion((1.5, 0.3, 0.66), (0.55, 0.5), 64, 20).move(0, 0.58, 0),
+                                    cushion((0.52, 0.12, 0.55), (0.6, 0.5), 40, 12).move(0.75, 0.8, 0)]))
+    car.part("cabin", "window", cushion((0.72, 0.4, 0.52), (0.65, 0.55), 48, 16).move(-0.25, 0.88, 0))
+    car.part("roof", "paint", cushion((0.56, 0.12, 0.45), (0.6, 0.5), 40, 12).move(-0.27, 1.22, 0))
+    wheel = tube([(0.26 * math.cos(TAU * i / 28), 0.26 * math.sin(TAU * i / 28), 0) for i in range(28)], 0.11, 12, closed=True)
+    hub = cushion((0.2, 0.2, 0.07), (1, 1), 24, 8)
+    ends = [(x, 0.37, z) for x in (-0.92, 0.92) for z in (-0.6, 0.6)]
+    car.part("wheels", "rubber", join([wheel.move(*at) for at in ends]))
+    car.part("hubs", "chrome", join([hub.move(*at) for at in ends]))
+    eye = cushion((0.05, 0.12, 0.12), (1, 1), 20, 8)
+    car.part("eyes", "chrome", join([eye.move(1.46, 0.62, z) for z in (-0.36, 0.36)]))
+    bumper = cushion((0.06, 0.06, 0.62), (0.7, 0.7), 20, 8)
+    car.part("bumpers", "chrome", join([bumper.move(x, 0.4, 0) for x in (-1.5, 1.5)]))
+    car.write(folder / "car.obj", smooth=("body", "cabin", "roof", "wheels", "hubs", "eyes", "bumpers"))
+
+
 def main():
     here = Path(__file__).resolve().parent.parent
     out = Path(sys.argv[1]) if len(sys.argv) > 1 else here / "scenes"
-    for make in (shapes, shadows, directions, extinction, lamps, mirror, glass, lens, textures, environment, many_lights, plates, spotlights):
+    for make in (shapes, shadows, directions, extinction, lamps, mirror, glass, lens, textures, environment, many_lights, plates, spotlights,
+                 metals, frosted, liquid, brushed, car_paint):
         make(out)
 
 

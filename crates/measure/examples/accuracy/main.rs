@@ -11,6 +11,7 @@ mod closed_forms;
 mod estimators;
 mod furnaces;
 mod kernel;
+mod materials;
 mod tables;
 
 use luminaire_measure::Workbench;
@@ -67,6 +68,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     calibration::measure(&bench, effort, &images, &tables, &mut texts)?;
     kernel::measure(&bench, effort, &tables, &mut texts)?;
     estimators::measure(&bench, effort, &tables, &mut texts)?;
+    materials::read(&mut texts)?;
     let page = fill(TEMPLATE, &texts)?;
     std::fs::write(&out, page).map_err(|e| format!("cannot write {}: {e}", out.display()))?;
     eprintln!("{}", out.display());
