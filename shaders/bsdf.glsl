@@ -22,7 +22,7 @@ void coat(Surfel s, Material material, vec3 wo, vec3 wi, out vec3 lambert, out v
 // normals disagree about the side of wi: light would leak through walls.
 vec4 bsdf_and_pdf(Surfel s, Material material, vec3 wo, vec3 wi) {
     float cosine = dot(s.shading_normal, wi);
-    if (dot(s.geometric_normal, wi) <= 0.0 || cosine <= 0.0) return vec4(0.0);
+    if (dot(SMOOTH_TERMINATOR ? s.horizon : s.geometric_normal, wi) <= 0.0 || cosine <= 0.0) return vec4(0.0);
     vec3 f = material.lambert * (1.0 / PI);
     vec3 glossy = material.glossy;
     if (is_coated(material)) {

@@ -120,6 +120,8 @@ bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uve
     if (IMPULSES && next.pdf != IMPULSE) path.scattered = true;
     path.from = s.position;
     if (LIGHT_TREE) path.normal = s.shading_normal;
+    // What goes through the surface starts on it.
+    if (SMOOTH_TERMINATOR && dot(next.wi, s.horizon) < 0.0) s.position -= s.lift;
     path.origin = offset_ray_origin(s.position, s.position_error, s.geometric_normal, next.wi);
     path.direction = next.wi;
     path.pdf = next.pdf == IMPULSE ? IMPULSE : next.pdf * reweighted;

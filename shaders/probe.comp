@@ -12,6 +12,7 @@ layout(local_size_x = 64) in;
 #include "warp.glsl"
 #include "texture.glsl"
 #include "intersect.glsl"
+#include "normal_map.glsl"
 #include "surfel.glsl"
 #include "impulse.glsl"
 #include "bsdf.glsl"
@@ -65,7 +66,8 @@ void write_hit(uint id, bool found, Hit hit) {
 
 // A surface at the origin whose normal is +z, seen from outside.
 Surfel upward(uint material) {
-    return Surfel(vec3(0.0), vec3(0.0), vec3(0.0, 0.0, 1.0), vec3(0.0, 0.0, 1.0), material, true, vec2(0.0), vec3(1.0));
+    return Surfel(vec3(0.0), vec3(0.0), vec3(0.0, 0.0, 1.0), vec3(0.0, 0.0, 1.0), material, true, vec2(0.0), vec3(1.0),
+                  vec4(0.0), vec3(0.0, 0.0, 1.0), vec3(0.0));
 }
 
 void main() {

@@ -19,18 +19,21 @@ layout(constant_id = 14) const bool MAP_TRANSFORMS = true;     // some map is mo
 layout(constant_id = 15) const bool ENVIRONMENT_IMAGE = true;  // that light has an image
 layout(constant_id = 16) const bool ENVIRONMENT_SAMPLING = true;    // light is sampled from there
 layout(constant_id = 17) const bool LIGHT_TREE = true;         // luminaires are chosen by a tree over them
-layout(constant_id = 18) const bool ORTHOGRAPHIC = false;
-layout(constant_id = 19) const bool SOBOL = false;
+layout(constant_id = 18) const bool TANGENTS = true;           // some mesh has tangents
+layout(constant_id = 19) const bool NORMAL_MAPS = true;        // some material has a map that bends the shading normal
+layout(constant_id = 20) const bool ORTHOGRAPHIC = false;
+layout(constant_id = 21) const bool SOBOL = false;
 
 // The integrator's choices (src/scene/estimator.rs).
-layout(constant_id = 20) const bool SIMPLE = false;            // the simple ray tracer instead of the path tracer
-layout(constant_id = 21) const uint LIGHT_SAMPLING = 2u;
-layout(constant_id = 22) const bool SOLID_ANGLE = true;        // near triangles are sampled by solid angle
-layout(constant_id = 23) const uint DIRECTIONS = 2u;
-layout(constant_id = 24) const uint EXTINCTION = 3u;
-layout(constant_id = 25) const bool THRESHOLD = false;         // paths of small albedo end
+layout(constant_id = 22) const bool SIMPLE = false;            // the simple ray tracer instead of the path tracer
+layout(constant_id = 23) const uint LIGHT_SAMPLING = 2u;
+layout(constant_id = 24) const bool SOLID_ANGLE = true;        // near triangles are sampled by solid angle
+layout(constant_id = 25) const uint DIRECTIONS = 2u;
+layout(constant_id = 26) const uint EXTINCTION = 3u;
+layout(constant_id = 27) const bool THRESHOLD = false;         // paths of small albedo end
 
-layout(constant_id = 26) const bool TRANSPARENT = false;       // the camera does not see where its rays escape to, and they are counted
+layout(constant_id = 28) const bool TRANSPARENT = false;       // the camera does not see where its rays escape to, and they are counted
+layout(constant_id = 29) const bool SMOOTH_TERMINATOR = false; // rays leave from above the triangles of smooth meshes
 
 const uint LIGHT_NONE = 0u;
 const uint LIGHT_DIRECT = 1u;
@@ -107,6 +110,10 @@ struct Material {
     uint one_sided;               // 1 if only the outward side emits
     uint thin;                    // 1 if it is a sheet whose two sides are one surface
     float coat_transmittance;     // where COATS: of even light from outside, what reaches the base
+    uint normal_map;              // textures that bend the shading normal, or NONE
+    float normal_scale;           // factor to what lies along the surface
+    uint bump_map;
+    float bump_scale;             // world length of a height of 1
 };
 // What impulse_probability is where the albedos say how probable an impulse is.
 const float BY_ALBEDOS = -1.0;
@@ -151,6 +158,9 @@ layout(set = 0, binding = 13) uniform usamplerBuffer environment_choice;
 // Vertex colours, three texels a triangle, where VERTEX_COLOURS.
 layout(set = 0, binding = 14) uniform usamplerBuffer colours;
 
+// Tangents of the corners with their handedness, three texels a triangle, where TANGENTS.
+layout(set = 0, binding = 16) uniform usamplerBuffer tangents;
+
 // The light tree (src/gpu/pack/light_tree.rs): a header, what is chosen beside the tree, nodes, paths.
 layout(set = 0, binding = 15) uniform usamplerBuffer light_tree;
 
@@ -162,7 +172,7 @@ const uint INFINITY_BITS = 0x7f800000u;
 // Sizes of the structures that are read as texels.
 const int TRIANGLE_TEXELS = 3;
 const int OBJECT_TEXELS = 8;
-const int MATERIAL_TEXELS = 8;
+const int MATERIAL_TEXELS = 9;
 const int LUMINAIRE_TEXELS = 7;
 const int TEXTURE_TEXELS = 3;
 const int LIGHT_TREE_HEADER = 2;
@@ -230,9 +240,10 @@ Material load_material(uint index) {
     vec4 transmission = uintBitsToFloat(texelFetch(materials, base + 5));
     uvec4 maps = texelFetch(materials, base + 6);
     uvec4 last = texelFetch(materials, base + 7);
+    uvec4 bent = texelFetch(materials, base + 8);
     return Material(ambient.rgb, ambient.w, lambert.rgb, lambert.w, glossy.rgb, glossy.w, emission.rgb, emission.w,
                     reflection.rgb, reflection.w, transmission.rgb, transmission.w, maps.x, maps.y, maps.z, maps.w, last.x, last.y, last.z,
-                    uintBitsToFloat(last.w));
+                    uintBitsToFloat(last.w), bent.x, uintBitsToFloat(bent.y), bent.z, uintBitsToFloat(bent.w));
 }
 
 Luminaire load_luminaire(uint index) {

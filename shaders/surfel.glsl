@@ -9,6 +9,9 @@ struct Surfel {
     bool front;               // wo is on the outward side
     vec2 uv;                  // where TEXTURES
     vec3 colour;              // of the vertices, where VERTEX_COLOURS
+    vec4 tangent;             // where TANGENTS: where u grows, beside the shading normal, with the handedness; zero where the mesh has none
+    vec3 horizon;             // where SMOOTH_TERMINATOR: the normal of the plane that parts above from below
+    vec3 lift;                // where SMOOTH_TERMINATOR: by how much `position` was moved off the triangle
 };
 
 // Bounds on the error of a position; src/gpu/pack/luminaire.rs takes them over a whole triangle.
@@ -36,6 +39,29 @@ vec3 vertex_colour(uint triangle, vec2 barycentric) {
     vec3 b = uintBitsToFloat(texelFetch(colours, base + 1).xyz);
     vec3 c = uintBitsToFloat(texelFetch(colours, base + 2).xyz);
     return (1.0 - barycentric.x - barycentric.y) * a + barycentric.x * b + barycentric.y * c;
+}
+
+// How far a point of a triangle is below the surface that its vertex normals mean, on the side of `side` (src/reference/surfel.rs).
+vec3 terminator_lift(Hit hit, vec3 p, vec3 side) {
+    Triangle triangle = load_triangle(hit.triangle);
+    vec3 corners[3] = vec3[3](triangle.a, triangle.b, triangle.c);
+    vec3 weights = vec3(1.0 - hit.barycentric.x - hit.barycentric.y, hit.barycentric);
+    vec3 lift = vec3(0.0);
+    for (int i = 0; i < 3; i++) {
+        vec3 n = uintBitsToFloat(texelFetch(normals, int(hit.triangle) * TRIANGLE_TEXELS + i).xyz);
+        vec3 corner = corners[i];
+        if (INSTANCES) {
+            vec4 to_world[3], to_object[3];
+            object_to_world(hit.object, to_world);
+            world_to_object(hit.object, to_object);
+            corner = row_dot(to_world, corner) + translation(to_world);
+            n = normal_to_world(to_object, n);
+        }
+        n = normalize(n / largest(abs(n)));
+        if (dot(n, side) < 0.0) n = -n;
+        lift += weights[i] * max(dot(corner - p, n), 0.0) * n;
+    }
+    return lift;
 }
 
 Surfel surfel(Hit hit, vec3 wo) {
@@ -116,6 +142,34 @@ Surfel surfel(Hit hit, vec3 wo) {
         if (dot(n, s.geometric_normal) < 0.0) n = -n;
         // A shading normal that faces away from the viewer says nothing useful.
         if (dot(n, wo) > 0.0) s.shading_normal = n;
+    }
+    if (SMOOTH_TERMINATOR) {
+        s.horizon = s.shading_normal;
+        s.lift = s.shading_normal != s.geometric_normal ? terminator_lift(hit, s.position, s.shading_normal) : vec3(0.0);
+        s.position += s.lift;
+    }
+    if (TANGENTS || NORMAL_MAPS) {
+        vec3 outward_normal = s.front ? s.shading_normal : -s.shading_normal;
+        s.tangent = TANGENTS ? tangent_at(hit, outward_normal) : vec4(0.0);
+        if (NORMAL_MAPS) {
+            Material material = load_material(s.material);
+            if (material.normal_map != NONE || material.bump_map != NONE) {
+                vec3 ab = b - a;
+                vec3 ac = c - a;
+                if (INSTANCES) {
+                    vec4 to_world[3];
+                    object_to_world(hit.object, to_world);
+                    ab = row_dot(to_world, ab);
+                    ac = row_dot(to_world, ac);
+                }
+                vec3 bent = mapped_normal(material, hit.triangle, ab, ac, s.uv, outward_normal, s.tangent);
+                s.shading_normal = guarded_normal(s.geometric_normal, wo, s.front ? bent : -bent);
+                if (TANGENTS) {
+                    s.tangent.xyz = beside(s.shading_normal, s.tangent.xyz);
+                    if (s.tangent.xyz == vec3(0.0)) s.tangent.w = 0.0;
+                }
+            }
+        }
     }
     return s;
 }

@@ -109,9 +109,9 @@ impl GpuScene {
         self.frame.write(&[self.frame_data])
     }
 
-    /// Bindings 0 to 15, of which 7 and 8 are the caller's.
+    /// Bindings 0 to 16, of which 7 and 8 are the caller's.
     pub(super) fn bindings<'a>(&'a self, seven: &'a Buffer, eight: &'a Buffer) -> Vec<Binding<'a>> {
-        let [intersector, triangles, normals, objects, uvs, colours] = self.geometry.bindings();
+        let [intersector, triangles, normals, objects, uvs, colours, tangents] = self.geometry.bindings();
         vec![
             Binding::Uniform(&self.frame),
             intersector,
@@ -129,6 +129,7 @@ impl GpuScene {
             Binding::Texel(&self.lighting.environment_choice),
             colours,
             Binding::Texel(&self.lighting.light_tree),
+            tangents,
         ]
     }
 }

@@ -72,6 +72,10 @@ features! {
     environment_sampling: "sampling of the environment",
     /// Luminaires are chosen by a tree over them.
     light_tree: "light tree",
+    /// Some mesh has tangents.
+    tangents: "tangents",
+    /// Some material has a map that bends the shading normal.
+    normal_maps: "normal maps",
 }
 
 /// The kernel that runs: the scene's features, and the choices of its integrator.
@@ -111,7 +115,8 @@ impl KernelModel {
             impulses: material(Material::has_impulse),
             dielectrics: material(|m| m.has_impulse() && m.eta.is_some()),
             textures: material(|m| {
-                [m.maps.ambient, m.maps.lambert, m.maps.glossy, m.maps.emission].iter().any(Option::is_some)
+                m.bends_normal()
+                    || [m.maps.ambient, m.maps.lambert, m.maps.glossy, m.maps.emission].iter().any(Option::is_some)
             }),
             holes: material(Material::has_holes),
             thin: material(Material::is_sheet),
@@ -121,6 +126,8 @@ impl KernelModel {
             environment_image: scene.environment.as_ref().is_some_and(|e| e.emits() && e.image.is_some()),
             environment_sampling: any(|l| matches!(l, SampledLuminaire::Environment)),
             light_tree: table.tree.is_some(),
+            tangents: scene.meshes.iter().any(|m| !m.tangents.is_empty()),
+            normal_maps: material(Material::bends_normal),
         };
         KernelModel {
             features,
@@ -132,7 +139,7 @@ impl KernelModel {
     }
 
     /// Names of the specialization constants after those of [`Features::CONSTANTS`], in lower case.
-    pub const CONSTANTS: [&str; 9] = [
+    pub const CONSTANTS: [&str; 10] = [
         "orthographic",
         "sobol",
         "simple",
@@ -142,6 +149,7 @@ impl KernelModel {
         "extinction",
         "threshold",
         "transparent",
+        "smooth_terminator",
     ];
 
     /// How the kernel finds light: where nothing is sampled, by chance alone gives the same numbers.
@@ -170,6 +178,7 @@ impl KernelModel {
             extinction_number(estimator.extinction),
             u32::from(estimator.albedo_threshold.is_some()),
             u32::from(self.transparent),
+            u32::from(estimator.smooth_terminator && self.features.vertex_normals),
         ]);
         constants
     }
@@ -220,6 +229,9 @@ impl std::fmt::Display for KernelModel {
         }
         if self.transparent {
             f.write_str(", alpha")?;
+        }
+        if self.integrator.estimator().smooth_terminator {
+            f.write_str(", smooth terminator")?;
         }
         Ok(())
     }

@@ -10,6 +10,7 @@
 //! | Inefficient Integration, More Efficient Integration | [`bsdf`]: `bsdf_direction`, `bsdf_pdf`; [`warp`] |
 //! | Extinction | [`scatter`]: `scatter`, `survival` |
 //! | Impulse Reflection, Adding Transmission | [`impulse`]: `fresnel`, `refract`, `impulses` |
+//! | (normal and height maps) | [`normal_map`] |
 //! | Intersection Problems | [`intersect`], [`surfel`]: `offset_ray_origin` |
 //! | Sensor Modelling | [`sensor`]: `sensor_ray` |
 //! | (what no estimator of the lecture finds) | [`lost_light`] |
@@ -27,6 +28,7 @@ pub mod intersect;
 pub mod light_tree;
 pub mod lost_light;
 pub mod luminaire;
+pub mod normal_map;
 pub mod path;
 mod prepared_scene;
 mod rounding;

@@ -25,6 +25,7 @@ mod sensor;
 mod sets;
 mod settings;
 mod studio_sky;
+mod tangents;
 mod texture;
 mod world;
 
@@ -41,7 +42,7 @@ pub use light_tree::LightTree;
 pub use load::{Choices, SceneFile, Sky, Up, load, load_with, scene_file, use_camera};
 pub use luminaire::Luminaire;
 pub use luminaire_table::{EmissiveTriangle, LuminaireTable, SampledLuminaire};
-pub use material::{Maps, Material};
+pub use material::{BumpMap, Maps, Material, NormalMap};
 pub use mesh::{Mesh, Object, Triangle};
 pub(crate) use mesh::{moved_box, outward, widen};
 pub use physical::{ChannelMap, Physical, PhysicalMaps};

@@ -237,7 +237,7 @@ impl Loader {
         for object in objects.iter().filter(|object| seen.insert((object.mesh, object.material))) {
             for WithoutUv { material, at } in &self.without_uv[object.mesh as usize] {
                 let material = &materials[object.material.unwrap_or(*material) as usize];
-                if material.maps != Maps::default() && said.insert((&material.name, at)) {
+                if (material.maps != Maps::default() || material.bends_normal()) && said.insert((&material.name, at)) {
                     self.warnings.push(format!(
                         "{at}: faces without texture coordinates, but material `{}` has maps; (0, 0) is used",
                         material.name

@@ -1,7 +1,7 @@
 //! A material while it is still being read: what nobody has said yet is `None`.
 
-use super::texture::{Channel, MapFile, Textures};
-use crate::scene::{Maps, Material};
+use super::texture::{Channel, MapFile, Relief, Textures};
+use crate::scene::{BumpMap, Maps, Material, NormalMap};
 use glam::Vec3;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
@@ -47,6 +47,12 @@ pub(super) struct Draft {
     pub impulse_probability: Option<f32>,
     /// `d`.
     pub opacity: Option<f32>,
+    /// Factor to what the normals of a map have along the surface.
+    pub normal_scale: Option<f32>,
+    /// Length of a height of 1.
+    pub bump_scale: Option<f32>,
+    /// Whether the map of heights may be one of normals, if it looks like one: MTL files have one word for both.
+    pub bump_or_normals: bool,
     /// The maps of all these.
     pub maps: DraftMaps,
     /// Warnings that many materials of a file may share: the file, and what is said of them.
@@ -70,6 +76,10 @@ pub(super) struct DraftMaps {
     pub emission: MapDraft,
     /// `map_d`.
     pub opacity: MapDraft,
+    /// `norm`.
+    pub normal: MapDraft,
+    /// `map_Bump`.
+    pub bump: MapDraft,
 }
 
 /// What is said about a map.
@@ -105,8 +115,8 @@ impl Draft {
 
     /// The files of its maps that are there.
     pub(super) fn map_files(&self) -> Vec<PathBuf> {
-        let DraftMaps { ambient, diffuse, glossy, emission, opacity } = &self.maps;
-        let maps = [ambient, diffuse, glossy, emission, opacity].into_iter().filter_map(MapDraft::file);
+        let DraftMaps { ambient, diffuse, glossy, emission, opacity, normal, bump } = &self.maps;
+        let maps = [ambient, diffuse, glossy, emission, opacity, normal, bump].into_iter().filter_map(MapDraft::file);
         maps.filter_map(MapFile::path).collect()
     }
 
@@ -124,6 +134,14 @@ impl Draft {
         self.thin = other.thin.or(self.thin);
         self.impulse_probability = other.impulse_probability.or(self.impulse_probability);
         self.opacity = other.opacity.or(self.opacity);
+        self.normal_scale = other.normal_scale.or(self.normal_scale);
+        self.bump_scale = other.bump_scale.or(self.bump_scale);
+        self.maps.normal.overlay(&other.maps.normal);
+        if !matches!(other.maps.bump, MapDraft::Unstated) {
+            // Whoever names a map by this key means what it says.
+            self.bump_or_normals = other.bump_or_normals;
+            self.maps.bump.overlay(&other.maps.bump);
+        }
         self.maps.ambient.overlay(&other.maps.ambient);
         self.maps.diffuse.overlay(&other.maps.diffuse);
         self.maps.glossy.overlay(&other.maps.glossy);
@@ -159,6 +177,8 @@ impl Draft {
             ("thin", self.thin == Some(true) && transmission == Vec3::ZERO, "`transmission`"),
             ("impulse_probability", self.impulse_probability.is_some() && !impulses, "`reflection` or `transmission`"),
             ("one_sided", self.one_sided.is_some() && emission == Vec3::ZERO, "`emission`"),
+            ("normal_scale", self.normal_scale.is_some() && self.maps.normal.file().is_none(), "`normal_map`"),
+            ("bump_scale", self.bump_scale.is_some() && self.maps.bump.file().is_none(), "`bump_map`"),
         ];
         for (key, idle, other) in without {
             if idle {
@@ -184,6 +204,8 @@ impl Draft {
             impulse_probability: self.impulse_probability,
             opacity: self.opacity.unwrap_or(1.0),
             maps: Maps::default(),
+            normal_map: None,
+            bump_map: None,
             physical: None,
         };
         if material.glossy != Vec3::ZERO && self.exponent.is_none() {
@@ -197,11 +219,47 @@ impl Draft {
             ));
         }
         self.load_maps(&mut material, textures, warnings);
+        self.load_relief(&mut material, textures, warnings);
         if material.opacity == 0.0 {
             warnings.push(format!("material `{name}` has opacity 0 (d): its surfaces cannot be seen"));
         }
         conserve_energy(&mut material, textures, warnings);
         material
+    }
+
+    /// What bends normals. A scale of 0 is no map.
+    fn load_relief(&self, material: &mut Material, textures: &mut Textures, warnings: &mut Vec<String>) {
+        let name = &self.name;
+        let scale = self.normal_scale.unwrap_or(1.0);
+        if let Some(map) = self.maps.normal.file().filter(|_| scale != 0.0) {
+            material.normal_map = textures.normals(map, warnings).map(|texture| NormalMap { texture, scale });
+        }
+        let scale = self.bump_scale.unwrap_or(1.0);
+        let Some(map) = self.maps.bump.file().filter(|_| scale != 0.0) else { return };
+        match textures.relief(map, self.bump_or_normals, warnings) {
+            None => {}
+            Some(Relief::Heights(texture)) => {
+                if textures.shows_normals(texture) {
+                    warnings.push(format!(
+                        "{}: material `{name}`: the image of `bump_map` looks like a map of normals, which is `normal_map`; it is taken as heights",
+                        map.at
+                    ));
+                }
+                material.bump_map = Some(BumpMap { texture, scale });
+            }
+            Some(Relief::Normals(_)) if material.normal_map.is_some() => warnings.push(format!(
+                "{}: material `{name}`: map_Bump holds normals too, of which `norm` counts",
+                map.at
+            )),
+            Some(Relief::Normals(texture)) => {
+                warnings.push(format!(
+                    "{}: material `{name}`: the image of map_Bump looks like a map of normals and is taken as one, -bm as its strength; `norm` in place \
+                     of map_Bump says so",
+                    map.at
+                ));
+                material.normal_map = Some(NormalMap { texture, scale });
+            }
+        }
     }
 
     /// Maps of numbers that are zero are not even looked for.

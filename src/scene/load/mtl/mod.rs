@@ -23,7 +23,7 @@ const MOST_WARNINGS: usize = 100;
 /// So many features that nothing models are named for a material.
 const MOST_IGNORED: usize = 32;
 
-/// Reads an MTL file: `Ka Kd Ks Ns Ke Ni Tf d Tr illum` and the maps of the colours and of `d`. What `illum` makes of them is a
+/// Reads an MTL file: `Ka Kd Ks Ns Ke Ni Tf d Tr illum`, the maps of the colours and of `d`, and those that bend normals (`map_Bump`, `bump`, `norm`). What `illum` makes of them is a
 /// table in `scenes/README.md`.
 ///
 /// # Errors
@@ -141,7 +141,8 @@ impl Reader<'_> {
                 None => self.warn("illum needs a number from 0 to 10; ignored"),
             },
             "Km" | "Kt" | "sharpness" => {}
-            "Pr" | "Pm" | "Ps" | "Pc" | "Pcr" | "aniso" | "anisor" | "bump" | "disp" | "decal" | "refl" | "norm" => {
+            "bump" | "norm" => self.map(keyword, rest, &mut current),
+            "Pr" | "Pm" | "Ps" | "Pc" | "Pcr" | "aniso" | "anisor" | "disp" | "decal" | "refl" => {
                 current.ignore(shortened(keyword).into_owned());
             }
             map if map.to_ascii_lowercase().starts_with("map_") => self.map(map, rest, &mut current),
@@ -164,12 +165,22 @@ impl Reader<'_> {
             "map_ks" => &mut maps.glossy,
             "map_ke" => &mut maps.emission,
             "map_d" => &mut maps.opacity,
+            "map_bump" | "bump" => &mut maps.bump,
+            "norm" | "map_kn" => &mut maps.normal,
             _ => return current.ignore(shortened(keyword).into_owned()),
         };
         let folder = self.path.parent().unwrap_or(Path::new(""));
         match map_options::parse(rest, folder, format!("{}:{}", self.path.display(), self.line)) {
             Ok(statement) => {
                 *map = MapDraft::File(statement.map);
+                match keyword.to_ascii_lowercase().as_str() {
+                    "map_bump" | "bump" => {
+                        current.draft.bump_scale = statement.multiplier;
+                        current.draft.bump_or_normals = true;
+                    }
+                    "norm" | "map_kn" => current.draft.normal_scale = statement.multiplier,
+                    _ => {}
+                }
                 for option in statement.ignored {
                     current.ignore(format!("{keyword} {option}"));
                 }

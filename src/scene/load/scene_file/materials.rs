@@ -19,6 +19,10 @@ const KEYS: &str = "\
 #   reflection          albedo of a mirror; with `eta` it lies over the rest, as varnish does
 #   transmission, eta   albedo of what passes into glass, and its index of refraction, 0.01 to 100; `thin = true`: a pane, which bends nothing
 #   opacity             share of light that meets the surface at all, 0 (a hole) to 1
+#   normal_map, normal_scale
+#                       an image of normals in tangent space (OpenGL's: green is up), and a factor to what they have along the surface
+#   bump_map, bump_scale
+#                       an image of heights, and the length of a height of 1
 #   ambient             albedo for the ambient term of the simple ray tracer
 #   impulse_probability above 0 and below 1: how often a path takes the mirror or glass; changes the noise, never the mean
 #   diffuse_map, glossy_map, emission_map, ambient_map, opacity_map
@@ -104,17 +108,27 @@ fn table(material: &Material, draft: &Draft, folder: &Path) -> Result<String> {
         key("ambient", triple(m.ambient));
     }
     key("opacity", number(m.opacity));
+    if let Some(map) = m.normal_map {
+        key("normal_scale", number(map.scale));
+    }
+    if let Some(map) = m.bump_map {
+        key("bump_scale", number(map.scale));
+    }
     // What has no albedo of its own here has the diffuse one, with its map.
     let ambient_map = match (&draft.maps.ambient, draft.ambient, m.maps.ambient) {
         (MapDraft::Unstated, None, Some(_)) if m.ambient != m.lambert => &draft.maps.diffuse,
         (own, ..) => own,
     };
+    // The word of MTL files for heights may have turned out to mean normals.
+    let normals = if draft.maps.normal.file().is_some() { &draft.maps.normal } else { &draft.maps.bump };
     let maps = [
         ("diffuse_map", &draft.maps.diffuse),
         ("glossy_map", &draft.maps.glossy),
         ("emission_map", &draft.maps.emission),
         ("ambient_map", ambient_map),
         ("opacity_map", &draft.maps.opacity),
+        ("normal_map", if m.normal_map.is_some() { normals } else { &MapDraft::Unstated }),
+        ("bump_map", if m.bump_map.is_some() { &draft.maps.bump } else { &MapDraft::Unstated }),
     ];
     for (name, map) in maps {
         if let MapDraft::File(map) = map {

@@ -61,12 +61,16 @@ impl File<'_> {
                 thin: table.thin,
                 impulse_probability: table.impulse_probability.map(|probability| probability.0),
                 opacity: table.opacity.map(|opacity| opacity.0),
+                normal_scale: table.normal_scale.as_ref().map(|scale| scale.get_ref().0),
+                bump_scale: table.bump_scale.as_ref().map(|scale| scale.get_ref().0),
                 maps: DraftMaps {
                     ambient: self.map(&table.ambient_map)?,
                     diffuse: self.map(&table.diffuse_map)?,
                     glossy: self.map(&table.glossy_map)?,
                     emission: self.map(&table.emission_map)?,
                     opacity: self.map(&table.opacity_map)?,
+                    normal: self.map(&table.normal_map)?,
+                    bump: self.map(&table.bump_map)?,
                 },
                 ..Draft::default()
             })
