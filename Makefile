@@ -36,7 +36,7 @@ test: ## install what the tests want, then run them all
 	else echo "SKIP: the Vulkan validation layer is not installed; its complaints are not tested"; fi; \
 	echo cargo test --release --workspace; cargo test --release --workspace
 
-fuzz: ## search for input that breaks the program: TARGET=obj, mtl, scene, texture or part, for SECONDS=1200 (wants cargo-fuzz: docs/reliability.md)
+fuzz: ## search for input that breaks the program: TARGET=obj, mtl, scene, ies, texture or part, for SECONDS=1200 (wants cargo-fuzz: docs/reliability.md)
 	@mkdir -p fuzz/corpus/$(or $(TARGET),obj)
 	cd fuzz && RUSTC_BOOTSTRAP=1 cargo fuzz run --sanitizer none $(or $(TARGET),obj) corpus/$(or $(TARGET),obj) seeds/$(or $(TARGET),obj) \
 		-- -timeout=10 -rss_limit_mb=1024 -max_len=4096 -max_total_time=$(or $(SECONDS),1200)
@@ -55,3 +55,5 @@ lint: ## format, clippy and documentation, without changing anything
 	cargo fmt --all --check
 	cargo clippy --release --workspace --all-targets -- -D warnings
 	RUSTDOCFLAGS="-D warnings" cargo doc --release --workspace --no-deps --document-private-items
+	@if command -v python3 > /dev/null; then python3 scripts/mutations.py --fit; \
+	else echo "SKIP: python3 is not here; whether scripts/mutations.py fits the source is not checked"; fi

@@ -156,7 +156,7 @@ def test(arguments):
 
 def rel_mse(picture, reference):
     half_power_mean = np.sqrt(np.maximum(reference, 0)).mean() ** 2
-    return float(((picture - reference) ** 2 / (reference**2 + (half_power_mean / 10) ** 2)).mean())
+    return float(((picture - reference) ** 2 / (reference**2 + (half_power_mean / 3) ** 2)).mean())
 
 
 def race(arguments):

@@ -18,6 +18,7 @@ bare                   shapes/knot.obj               400 256
 cornell                cornell/cornell.toml          512 512
 simple                 simple/simple.toml            640 16
 shadows                shadows/shadows.toml          640 192
+spotlights             spotlights/spotlights.toml    640 512
 directions-uniform     directions/directions.toml    288 64   --directions uniform
 directions-cosine      directions/directions.toml    288 64   --directions cosine
 directions-bsdf        directions/directions.toml    288 64

@@ -2,7 +2,7 @@
 """Makes the meshes and images of scenes/ again: python3 scripts/make-scenes.py [FOLDER]   (FOLDER: scenes, beside this script)
 
 Python 3 and its standard library are all it needs. It draws every random number from fixed seeds, so the same files come out
-each time (the bytes of a PNG may differ with another version of zlib, its pixels do not). It writes .obj, .png and .hdr files only:
+each time (the bytes of a PNG may differ with another version of zlib, its pixels do not). It writes .obj, .png, .hdr and .ies files only:
 the .toml and .mtl files are written by hand, and so are cornell/, instances/, simple/ and furnace/furnace.obj.
 
 Conventions: y is up, faces are counter-clockwise seen from outside, v of a texture coordinate is upwards. A shape is a list of points,
@@ -715,10 +715,37 @@ def plates(out):
     lights.write(out / "plates" / "lights.obj")
 
 
+def spotlights(out):
+    stage = Obj("A pavilion open to the front, with a plinth, and a fence beside it in the sun.")
+    stage.part("floor", "floor", quad((-5.6, 0, 4), (5.6, 0, 4), (5.6, 0, -2.2), (-5.6, 0, -2.2)))
+    stage.part("wall", "wall", box((-3.6, 0, -2.2), (3.6, 3.1, -2)))
+    stage.part("roof", "wall", box((-3.8, 3.1, -2.3), (3.8, 3.25, -0.9)))
+    stage.part("plinth", "plinth", box((1.5, 0, -1.55), (2.3, 0.7, -0.95)))
+    pickets = [box((-3.1, 0, 1 + 0.32 * i), (-3.04, 0.9, 1.1 + 0.32 * i)) for i in range(9)]
+    stage.part("fence", "wood", join(pickets + [box((-3.04, h, 0.9), (-2.98, h + 0.08, 3.8)) for h in (0.2, 0.62)]))
+    stage.part("lamps", "metal", join([box((x - 0.07, 2.86, -1.77), (x + 0.07, 2.98, -1.63)) for x in (-2.7, -1.5, -0.3)]))
+    stage.write(out / "spotlights" / "stage.obj")
+
+    # A wall washer of our own: a round beam, a ring of its reflector around it, and a tail that is wider to the sides than to front and back.
+    vertical = [0, 5, 10, 15, 20, 25, 30, 35, 40, 45, 50, 55, 60, 65, 70, 75, 80, 85, 90]
+    horizontal = [0, 22.5, 45, 67.5, 90]
+
+    def candela(theta, phi):
+        beam = 900 * math.exp(-((theta / 16) ** 2))
+        ring = 260 * math.exp(-(((theta - 36) / 6) ** 2))
+        tail = 90 * math.cos(math.radians(theta)) * (1 + 0.8 * math.cos(math.radians(2 * phi)))
+        return beam + ring + tail
+
+    rows = [" ".join(f"{candela(theta, phi):.1f}" for theta in vertical) for phi in horizontal]
+    lines = ["IESNA:LM-63-2002", "[TEST] none: made by scripts/make-scenes.py", "[MANUFAC] nobody", "[LUMINAIRE] wall washer", "TILT=NONE",
+             f"1 -1 1 {len(vertical)} {len(horizontal)} 1 2 0 0 0", "1 1 20", " ".join(map(str, vertical)), " ".join(map(str, horizontal))]
+    (out / "spotlights" / "wall-washer.ies").write_text("\n".join(lines + rows) + "\n")
+
+
 def main():
     here = Path(__file__).resolve().parent.parent
     out = Path(sys.argv[1]) if len(sys.argv) > 1 else here / "scenes"
-    for make in (shapes, shadows, directions, extinction, lamps, mirror, glass, lens, textures, environment, many_lights, plates):
+    for make in (shapes, shadows, directions, extinction, lamps, mirror, glass, lens, textures, environment, many_lights, plates, spotlights):
         make(out)
 
 

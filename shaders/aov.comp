@@ -13,6 +13,9 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "texture.glsl"
 #include "intersect.glsl"
 #include "normal_map.glsl"
+#include "fresnel.glsl"
+#include "microfacet.glsl"
+#include "physical.glsl"
 #include "surfel.glsl"
 #include "impulse.glsl"
 #include "sensor.glsl"
@@ -43,9 +46,12 @@ void main() {
         if (!closest_hit(origin, direction, INFINITY, salt, hit)) continue;
         Surfel s = surfel(hit, -direction);
         Material material = material_at(s);
+        if (PHYSICAL) find_lobes(s, material, -direction);
         vec3 base = material.lambert;
         if (GLOSSY) base += material.glossy;
-        if (DIELECTRICS && material.eta != MIRROR && material.transmission == vec3(0.0)) {
+        if (is_physical(material)) {
+            albedo += normal_albedo(s.lobes.p);
+        } else if (DIELECTRICS && material.eta != MIRROR && material.transmission == vec3(0.0)) {
             // As from straight above; on a black base too, which a map may have in places.
             albedo += base + material.reflection * fresnel(material.eta, 1.0) * (1.0 - base);
         } else {

@@ -20,9 +20,21 @@ void coat(Surfel s, Material material, vec3 wo, vec3 wi, out vec3 lambert, out v
 
 // f(wo, wi), without the cosine, in rgb; w: the density per steradian with which bsdf_direction gives wi. All zero where the two
 // normals disagree about the side of wi: light would leak through walls.
+//
+// Of a metallic-roughness surface without the factor 1 / eta^2 of what is refracted (`dilution`).
 vec4 bsdf_and_pdf(Surfel s, Material material, vec3 wo, vec3 wi) {
     float cosine = dot(s.shading_normal, wi);
-    if (dot(SMOOTH_TERMINATOR ? s.horizon : s.geometric_normal, wi) <= 0.0 || cosine <= 0.0) return vec4(0.0);
+    float height = dot(SMOOTH_TERMINATOR ? s.horizon : s.geometric_normal, wi);
+    if (is_physical(material)) {
+        bool both = scatters_through(s.lobes);
+        if (height * cosine <= 0.0 || (!both && cosine < 0.0)) return vec4(0.0);
+        vec4 f = physical_value_and_pdf(s.lobes, vec3(dot(s.lobes.x, wi), dot(s.lobes.y, wi), cosine));
+        float sides = both ? 0.5 : 1.0;
+        if (DIRECTIONS == DIRECTIONS_UNIFORM) f.w = sides * (0.5 / PI);
+        if (DIRECTIONS == DIRECTIONS_COSINE) f.w = sides * abs(cosine) * (1.0 / PI);
+        return f;
+    }
+    if (height <= 0.0 || cosine <= 0.0) return vec4(0.0);
     vec3 f = material.lambert * (1.0 / PI);
     vec3 glossy = material.glossy;
     if (is_coated(material)) {
@@ -51,6 +63,16 @@ vec4 bsdf_and_pdf(Surfel s, Material material, vec3 wo, vec3 wi) {
 
 // A direction for indirect light; `choice` in [0, 1) picks the lobe.
 vec3 bsdf_direction(Surfel s, Material material, vec3 wo, vec2 u, float choice) {
+    if (is_physical(material)) {
+        if (DIRECTIONS == DIRECTIONS_BSDF) {
+            vec3 wi = physical_direction(s.lobes, u, choice);
+            return wi.x * s.lobes.x + wi.y * s.lobes.y + wi.z * s.shading_normal;
+        }
+        // Half of them from below, if light from there is scattered.
+        bool below = scatters_through(s.lobes) && choice < 0.5;
+        vec3 wi = DIRECTIONS == DIRECTIONS_UNIFORM ? uniform_hemisphere(u) : cosine_hemisphere(u);
+        return from_frame(below ? -s.shading_normal : s.shading_normal, wi);
+    }
     if (DIRECTIONS == DIRECTIONS_UNIFORM) return from_frame(s.shading_normal, uniform_hemisphere(u));
     if (GLOSSY && DIRECTIONS == DIRECTIONS_BSDF && choice < glossy_share(material)) {
         vec3 h = from_frame(s.shading_normal, glossy_half_vector(material.exponent, u));

@@ -1,32 +1,5 @@
 // Impulses (slides "Impulse Reflection", "Adding Transmission"): mirrors and smooth dielectrics; twins in src/reference/impulse.rs.
 
-// The square of the refracted direction's cosine; not above zero where all is reflected. As 1 - sin^2 / eta^2 it would lose all its digits
-// near the critical angle, and at grazing where the index is nearly 1.
-float transmitted_cosine2(float eta, float cos_i) { return ((eta - 1.0) * (eta + 1.0) + cos_i * cos_i) / (eta * eta); }
-
-// Reflectance of a smooth dielectric for unpolarised light; `eta` is the index behind the surface over that in front of it.
-float fresnel(float eta, float cos_i) {
-    float cosine2 = transmitted_cosine2(eta, cos_i);
-    if (cosine2 <= 0.0) return 1.0;
-    float cos_t = sqrt(cosine2);
-    float s = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
-    float p = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
-    return 0.5 * (s * s + p * p);
-}
-
-// The direction on the other side of a smooth surface; zero where all is reflected.
-vec3 refract_direction(vec3 wo, vec3 n, float eta) {
-    float cos_i = dot(wo, n);
-    float cosine2 = transmitted_cosine2(eta, cos_i);
-    if (cosine2 <= 0.0) return vec3(0.0);
-    return normalize((cos_i / eta - sqrt(cosine2)) * n - wo / eta);
-}
-
-// Reflectance of a sheet between two parallel surfaces of this reflectance, with all that goes to and fro between them.
-float thin_reflectance(float fresnel) { return 2.0 * fresnel / (1.0 + fresnel); }
-
-vec3 reflect_direction(vec3 wo, vec3 n) { return 2.0 * dot(wo, n) * n - wo; }
-
 // What the impulses at a surfel do with light from one side.
 struct Impulses {
     vec3 reflected;       // albedo
@@ -35,8 +8,6 @@ struct Impulses {
     float eta;            // index on the other side over that on the side of wo; 0 for a mirror
     float probability;    // with which a path takes an impulse
 };
-
-float mean(vec3 v) { return (v.x + v.y + v.z) * (1.0 / 3.0); }
 
 // Whether what scatters lies under a smooth dielectric, not beside it.
 bool is_coated(Material material) {
@@ -47,10 +18,35 @@ bool is_coated(Material material) {
 Impulses impulses(Surfel s, Material material, vec3 wo) {
     Impulses i = Impulses(vec3(0.0), vec3(0.0), s.shading_normal, 0.0, 0.0);
     if (!IMPULSES) return i;
+    if (is_physical(material)) {
+        Lobes l = s.lobes;
+        bool clear = is_clear(l);
+        i.eta = bend(l);
+        vec3 transmitted = clear ? refract_direction(wo, i.normal, i.eta) : vec3(0.0);
+        bool wrong = dot(reflect_direction(wo, i.normal), s.geometric_normal) <= 0.0;
+        if (clear) wrong = wrong || dot(transmitted, s.geometric_normal) >= 0.0;
+        if ((VERTEX_NORMALS || NORMAL_MAPS) && wrong) {
+            i.normal = s.geometric_normal;
+            if (clear) {
+                l = physical_lobes(l.p, i.normal, s.tangent.xyz, s.front, wo);
+                transmitted = refract_direction(wo, i.normal, i.eta);
+            }
+        }
+        i.reflected = l.impulse_reflection;
+        // Microfacets may let through what the surface as a whole would not.
+        i.transmitted = transmitted == vec3(0.0) ? vec3(0.0) : l.impulse_transmission;
+        float impulse = mean(i.reflected + i.transmitted);
+        float other = scattered_albedo(s.lobes);
+        if (impulse > 0.0) {
+            if (other == 0.0) i.probability = 1.0;
+            else i.probability = material.impulse_probability != BY_ALBEDOS ? material.impulse_probability : impulse / (impulse + other);
+        }
+        return i;
+    }
     vec3 rest = material.lambert;
     if (GLOSSY) rest += material.glossy;
     i.reflected = material.reflection;
-    bool thin = THIN && material.thin != 0u;
+    bool thin = THIN && is_thin(material);
     bool opaque = material.transmission == vec3(0.0);
     if (DIELECTRICS && material.eta != MIRROR) {
         // A sheet lets light through as if it were not there, and nobody is inside of what transmits nothing.
@@ -58,7 +54,7 @@ Impulses impulses(Surfel s, Material material, vec3 wo) {
     }
     // A direction on the wrong side of the triangle, or all reflected by glass: the triangle's own normal instead. Total reflection about
     // interpolated normals would keep paths for ever (src/reference/impulse.rs).
-    if (VERTEX_NORMALS) {
+    if (VERTEX_NORMALS || NORMAL_MAPS) {
         bool wrong = dot(reflect_direction(wo, i.normal), s.geometric_normal) <= 0.0;
         if (DIELECTRICS && !opaque) wrong = wrong || dot(refract_direction(wo, i.normal, i.eta), s.geometric_normal) >= 0.0;
         if (wrong) i.normal = s.geometric_normal;

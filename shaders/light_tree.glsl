@@ -1,5 +1,5 @@
 // The choice of a luminaire by the light tree (twin: src/reference/light_tree.rs): down from the root with one random number, each child in
-// proportion to what may arrive of it.
+// proportion to what may arrive of it. A second number chooses between the tree and what stands beside it, and has further bits.
 
 // What is added to a ball's apparent size against the surface's horizon, for rounding.
 const float HORIZON_MARGIN = 1e-4;
@@ -15,6 +15,8 @@ const float INNER_SIDE = 0.03125;
 const uint LEAST_WIDTH = 0x01000000u;
 // The largest fraction of 2^32 that is also a float.
 const float LAST_FRACTION = 4294967040.0;
+// What is added to a cosine before it is held against a cone's, for the rounding of axes to 16 bits.
+const float CONE_COSINE_MARGIN = 2e-4;
 // A choice among more numbers than these is none.
 const float MOST_NUMBERS = 1e30;
 
@@ -29,12 +31,28 @@ vec4 facing(vec4 cosine, vec4 spread) {
     return mix(above * above / (4.0 * spread), cosine, greaterThanEqual(cosine, spread));
 }
 
-// How much light of each child of a node may arrive at a surface with the normal `n`, relative to each other; 0: surely none.
+// 1 where some light of a ball may arrive that stays within cones, 0 elsewhere: `cone` is their cosine around an axis, `cosine` that of the way here, `sine` the
+// ball's radius over its distance.
+vec4 within_cone(vec4 cone, vec4 cosine, vec4 sine) {
+    vec4 other = sqrt(max(1.0 - sine * sine, 0.0));
+    // The cosine of the cone's angle and the ball's together, unless they are half a turn.
+    vec4 both = cone * other - sqrt(max(1.0 - cone * cone, 0.0)) * sine;
+    bvec4 all_around = greaterThanEqual(max(sine, -cone - other + 1.0), vec4(1.0));
+    return mix(step(both, cosine + CONE_COSINE_MARGIN), vec4(1.0), all_around);
+}
+
+// How much light of each child of a node may arrive at a surface with the normal `n`, relative to each other; 0: surely none. A normal of length 2 says
+// that light from both sides counts (`receiver`).
 vec4 light_importances(vec3 p, vec3 n, uint node) {
     vec4 x = light_texel(node) - p.x;
     vec4 y = light_texel(node + 1u) - p.y;
     vec4 z = light_texel(node + 2u) - p.z;
     vec4 radius = light_texel(node + 3u);
+    bvec4 cone = bvec4(false);
+    if (SPOTS || PROFILES) {
+        cone = lessThan(radius, vec4(0.0));
+        radius = abs(radius);
+    }
     vec4 strength = light_texel(node + 4u);
     ivec4 axis_xy = ivec4(texelFetch(light_tree, int(node + 5u)));
     ivec4 axis_z_spread = ivec4(texelFetch(light_tree, int(node + 6u)));
@@ -43,16 +61,21 @@ vec4 light_importances(vec3 p, vec3 n, uint node) {
     vec4 near = max(distance2, radius * radius);
     float nearest = min(min(near.x, near.y), min(near.z, near.w));
     vec4 sine = min(radius * inverse, MOST_SINE);
-    vec4 incident = facing((n.x * x + n.y * y + n.z * z) * inverse, sine + HORIZON_MARGIN);
+    vec4 incident = (n.x * x + n.y * y + n.z * z) * inverse;
+    if (ROUGH_TRANSMISSION && dot(n, n) > 2.0) incident = 0.5 * abs(incident);
+    incident = facing(incident, sine + HORIZON_MARGIN);
     // Two numbers from -1 to 1 in 16 bits each.
     vec4 along = vec4(axis_xy << 16 >> 16) * x + vec4(axis_xy >> 16) * y + vec4(axis_z_spread << 16 >> 16) * z;
     vec4 cosine = along * inverse * (-1.0 / 32767.0);
     vec4 spread = vec4(axis_z_spread >> 16) * (1.0 / 32767.0);
+    vec4 within = vec4(1.0);
+    if (SPOTS || PROFILES) within = within_cone(spread, cosine, sine);
     cosine = mix(cosine, abs(cosine), lessThan(spread, vec4(0.0)));
     spread = sine + abs(spread);
     vec4 inner = mix(vec4(0.0), INNER_SIDE * facing(-cosine, spread), lessThan(strength, vec4(0.0)));
     strength = abs(strength);
     vec4 emitted = mix(max(facing(cosine, spread), inner), 1.0 + cosine, greaterThanEqual(axis_z_spread >> 16, ivec4(32767)));
+    if (SPOTS || PROFILES) emitted = mix(emitted, within, cone);
     vec4 importance = max(strength * (nearest / near) * incident * emitted, LEAST_IMPORTANCE);
     bvec4 none = lessThanEqual(min(min(incident, emitted), strength), vec4(0.0));
     return mix(importance, vec4(0.0), none);
@@ -75,27 +98,22 @@ bool light_cuts(vec3 p, vec3 n, uint node, uint width, out uvec3 cuts) {
 bool choose_by_tree(vec3 p, vec3 n, uint random, uint more, out uint luminaire, out float probability) {
     uvec4 header = texelFetch(light_tree, 0);
     uint slot, number;
-    umulExtended(random, header.x, slot, number);
+    umulExtended(more, header.x, slot, number);
     uvec4 entry = texelFetch(light_tree, LIGHT_TREE_HEADER + int(slot));
-    uint width = entry.x;
-    if (number >= entry.x) {
-        number -= entry.x;
-        width = 0u - entry.x;
-        entry = texelFetch(light_tree, LIGHT_TREE_HEADER + int(entry.z));
-    }
+    if (number >= entry.x) entry = texelFetch(light_tree, LIGHT_TREE_HEADER + int(entry.z));
     luminaire = entry.y;
     probability = uintBitsToFloat(entry.w);
     if (luminaire != NONE) return true;
-    // None is all of them.
-    if (width == 0u) width = 0xffffffffu;
-    number = min(number, width - 1u);
+    uint width = 0xffffffffu;
+    number = min(random, width - 1u);
     float whole = float(width);
     uint node = header.y;
     while (true) {
         while (width < LEAST_WIDTH) {
+            // First, as the upper bits have chosen among what stands beside the tree; below those all are as likely.
+            more = more * 747796405u + 2891336453u;
             width <<= 8;
             number = number << 8 | more >> 24;
-            more = more * 747796405u + 2891336453u;
             whole *= 256.0;
         }
         uvec3 cuts;
@@ -157,6 +175,13 @@ uvec2 light_path(Hit hit) {
     if (!INSTANCES) return light_path(triangle.shape >> ORDINAL_SHIFT);
     ObjectPlace place = object_place(hit.object);
     return light_path(place.first_emitter + (place.material != NONE ? triangle.index_in_mesh : triangle.shape >> ORDINAL_SHIFT));
+}
+
+// Of choosing the disc of this number among those at infinity.
+float sun_probability(uint number, Luminaire sun) {
+    if (!by_light_tree()) return sun.ideal_probability;
+    uint slot = texelFetch(light_tree, 1).y + number;
+    return uintBitsToFloat(texelFetch(light_tree, LIGHT_TREE_HEADER + int(slot)).w);
 }
 
 // Of choosing the environment.

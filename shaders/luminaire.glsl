@@ -51,7 +51,14 @@ float triangle_density(vec3 p, vec3 n, vec3 wi, Hit hit, float area_density) {
     float scale = largest(abs(normal));
     float double_area = scale * length(normal / scale);
     float area = 0.5 * double_area;
-    area_density = by_light_tree() ? tree_probability(p, n, light_path(hit)) / area : max(area_density, frame.least_probability / area);
+    if (by_light_tree()) {
+        float chosen = tree_probability(p, n, light_path(hit));
+        // One that is never chosen may be seen from the edge, where the density would be infinite.
+        if (chosen == 0.0) return 0.0;
+        area_density = chosen / area;
+    } else {
+        area_density = max(area_density, frame.least_probability / area);
+    }
     vec3 v[3];
     float omega;
     if (is_near(p, a, b, c, area, v, omega)) return area_density * area / omega;
@@ -66,6 +73,25 @@ float emission_weight(float pdf, float density) {
     return power_heuristic(pdf, density);
 }
 
+// What a path that escapes with the density `pdf` finds of the discs at infinity, each with its weight.
+vec3 sunlight(vec3 direction, float pdf) {
+    vec3 radiance = vec3(0.0);
+    for (uint i = 0u; i < frame.sun_count; i++) {
+        Luminaire sun = load_luminaire(frame.first_sun + i);
+        if (one_minus_cosine(direction, sun.a) > sun.area) continue;
+        float density = 0.0;
+        if (LIGHT_SAMPLING == LIGHT_MIS && pdf != IMPULSE) density = sun_probability(i, sun) * sun_density(sun);
+        radiance += sun.radiance * emission_weight(pdf, density);
+    }
+    return radiance;
+}
+
+// The share of a spot's intensity that it sends along `direction`, a unit vector.
+float spot_falloff(Luminaire light, vec3 direction) {
+    float inside = clamp((light.area - one_minus_cosine(direction, light.b)) * light.position_error, 0.0, 1.0);
+    return inside * inside;
+}
+
 // Light from one luminaire that `s` sends towards `wo`; `throughput` is the path's so far, without eta^2, and `rest` the probability that
 // it takes no impulse there. Adds the shadow ray to `rays` (all, shadow).
 vec3 direct_light(Surfel s, Material material, vec3 wo, vec3 throughput, uvec4 random, float rest, uint salt, inout uvec2 rays) {
@@ -74,17 +100,18 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, vec3 throughput, uvec4 r
     uint chosen;
     float probability = 0.0;
     if (!tree) chosen = choose_luminaire(random.z);
-    else if (!choose_by_tree(s.position, s.shading_normal, random.z, random.w, chosen, probability)) return vec3(0.0);
+    else if (!choose_by_tree(s.position, receiver(s, material), random.z, random.w, chosen, probability)) return vec3(0.0);
     Luminaire light = load_luminaire(chosen);
     if (tree) {
         light.probability = probability;
         light.ideal_probability = probability;
     }
     // With one kind of luminaire in the scene these are constants.
-    bool several = int(POINT_LUMINAIRES) + int(INFINITE_LUMINAIRES) + int(AREA_LUMINAIRES) + int(ENVIRONMENT_SAMPLING) > 1;
+    bool several = int(POINT_LUMINAIRES) + int(INFINITE_LUMINAIRES) + int(AREA_LUMINAIRES) + int(ENVIRONMENT_SAMPLING) + int(SUNS) > 1;
     bool infinite = INFINITE_LUMINAIRES && (!several || light.kind == INFINITE);
     bool area = AREA_LUMINAIRES && (!several || light.kind == AREA);
     bool surroundings = ENVIRONMENT_SAMPLING && (!several || light.kind == SURROUNDINGS);
+    bool sun = SUNS && (!several || light.kind == SUN);
     // Unshadowed radiance over the density of finding it, and the shadow ray that must reach (0, t_max) unhindered.
     vec3 target = light.a;
     vec3 wi = target;
@@ -96,6 +123,11 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, vec3 throughput, uvec4 r
         wi = sample_environment(random.xy, density);
         incident = environment_radiance(wi) / (density * light.probability);
         density *= light.probability;
+    } else if (sun) {
+        wi = sample_sun(light, uniform2(random.xy));
+        density = sun_density(light);
+        incident /= density;
+        density *= light.ideal_probability;
     } else if (!infinite) {
         t_max = 1.0;
         float double_area = 2.0 * light.area;
@@ -123,6 +155,8 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, vec3 throughput, uvec4 r
             if (distance2 == 0.0) return vec3(0.0);
             wi = d * inversesqrt(distance2);
             incident /= distance2;
+            if (SPOTS && light.kind == SPOT) incident *= spot_falloff(light, -wi);
+            if (PROFILES && light.kind == PHOTOMETRIC) incident *= photometric_intensity(light, -wi);
             if (area) {
                 float cosine = light.area * abs(dot(light.normal, wi));
                 incident *= cosine;
@@ -132,11 +166,12 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, vec3 throughput, uvec4 r
     }
     if (area && light.one_sided != 0.0 && dot(light.normal, wi) > 0.0) return vec3(0.0);
     vec4 f = bsdf_and_pdf(s, material, wo, wi);
-    vec3 scattered = f.rgb * dot(s.shading_normal, wi);
+    vec3 scattered = f.rgb * cosine_at(s, wi);
     vec3 radiance = scattered * incident;
+    if (ROUGH_TRANSMISSION) radiance /= dilution(s, material, wi);
     if (radiance == vec3(0.0)) return vec3(0.0);
-    if (LIGHT_SAMPLING == LIGHT_MIS && (area || surroundings)) {
-        radiance *= power_heuristic(density, path_pdf(f.w * rest, throughput * scattered, material));
+    if (LIGHT_SAMPLING == LIGHT_MIS && (area || surroundings || sun)) {
+        radiance *= power_heuristic(density, path_pdf(f.w * rest, throughput * scattered, s, material));
     }
 
     if (area && (TEXTURES || HOLES)) {
@@ -159,13 +194,17 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, vec3 throughput, uvec4 r
 
     vec3 origin = offset_ray_origin(s.position, s.position_error, s.geometric_normal, wi);
     vec3 direction = wi;
-    if (!infinite && !surroundings) {
+    if (!infinite && !surroundings && !sun) {
         if (area) {
             target = offset_ray_origin(target, vec3(target_error), light.normal, -wi);
             // The end of the segment rounds by its length: stop eight units in the last place before it.
             t_max = 1.0 - 9.5367432e-7;
         }
         direction = target - origin;
+    }
+    if (VOLUMES) {
+        vec3 absorption = inner_absorption(s, material, wi);
+        if (absorption != vec3(0.0)) radiance *= absorbed(absorption, infinite || surroundings ? 1e30 : length(direction) * t_max);
     }
     rays += uvec2(1u);
     return occluded(origin, direction, t_max, salt) ? vec3(0.0) : radiance;

@@ -12,12 +12,13 @@ struct Path {
     float eta_scale;    // product of the squared relative indices that were passed, by which refraction diluted the throughput
     bool scattered;     // by a lobe, at some surface before; unless there are no impulses
     vec3 albedo;        // product of the albedos (combinedAlbedo)
+    vec3 absorption;    // of the body into which the path left the last surface, where VOLUMES
 };
 
 Path camera_path(uvec2 pixel, uint pixel_index, uint sample_index) {
     vec3 origin, direction;
     sensor_ray(pixel, pixel_index, sample_index, origin, direction);
-    return Path(origin, origin, vec3(0.0), direction, vec3(1.0), vec3(0.0), 0u, IMPULSE, 1.0, false, vec3(1.0));
+    return Path(origin, origin, vec3(0.0), direction, vec3(1.0), vec3(0.0), 0u, IMPULSE, 1.0, false, vec3(1.0), vec3(0.0));
 }
 
 // What roulette is told of the throughput at the surface that the path has met.
@@ -46,6 +47,7 @@ bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uve
             path.bounce = NONE;
             return false;
         }
+        if (VOLUMES) path.throughput *= vec3(equal(path.absorption, vec3(0.0)));
         // Without an environment escaping light disappears.
         if (ENVIRONMENT) {
             float density = 0.0;
@@ -55,11 +57,19 @@ bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uve
             float weight = emission_weight(path.pdf, density);
             if (weight > 0.0) path.radiance += path.throughput * environment_radiance(path.direction) * weight;
         }
+        if (SUNS) path.radiance += path.throughput * sunlight(path.direction, path.pdf);
         return false;
     }
     vec3 wo = -path.direction;
     Surfel s = surfel(hit, wo);
     Material material = material_at(s);
+    if (PHYSICAL) find_lobes(s, material, wo);
+    if (VOLUMES) {
+        // Inside of a body, as the surface says that the ray comes to, or else the one that it left.
+        vec3 absorption = inner_absorption(s, material, wo);
+        if (absorption == vec3(0.0)) absorption = path.absorption;
+        if (absorption != vec3(0.0)) path.throughput *= absorbed(absorption, hit.t);
+    }
 
     if (AREA_LUMINAIRES && material.emission != vec3(0.0)) {
         float density = 0.0;
@@ -74,6 +84,7 @@ bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uve
 
     Impulses i = impulses(s, material, wo);
     bool glossy_or_lambert = material.lambert != vec3(0.0) || (GLOSSY && material.glossy != vec3(0.0));
+    if (is_physical(material)) glossy_or_lambert = scatters(s.lobes.p);
     if (LIGHT_SAMPLING != LIGHT_NONE && (!IMPULSES || glossy_or_lambert)) {
         uvec4 random = numbers(pixel_index, sample_index, light_block(path.bounce), frame.seed);
         salt = HOLES ? ray_salt(pixel_index, sample_index, 2u * path.bounce + 1u, frame.seed) : 0u;
@@ -88,7 +99,7 @@ bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uve
     uvec4 random = numbers(pixel_index, sample_index, scatter_block(path.bounce), frame.seed);
     float reweighted = 1.0;
     if (EXTINCTION == EXTINCTION_LITERAL || EXTINCTION == EXTINCTION_SURFACE) {
-        float alive = survival(material);
+        float alive = survival(s, material);
         // Written so that a path whose numbers are not numbers ends too.
         if (!(uniform1(random.w) < alive)) return false;
         // The survivors stand for those that ended; the slide forgets that.
@@ -119,9 +130,8 @@ bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uve
     }
     if (IMPULSES && next.pdf != IMPULSE) path.scattered = true;
     path.from = s.position;
-    if (LIGHT_TREE) path.normal = s.shading_normal;
-    // What goes through the surface starts on it.
-    if (SMOOTH_TERMINATOR && dot(next.wi, s.horizon) < 0.0) s.position -= s.lift;
+    if (LIGHT_TREE) path.normal = receiver(s, material);
+    if (VOLUMES) path.absorption = inner_absorption(s, material, next.wi);
     path.origin = offset_ray_origin(s.position, s.position_error, s.geometric_normal, next.wi);
     path.direction = next.wi;
     path.pdf = next.pdf == IMPULSE ? IMPULSE : next.pdf * reweighted;

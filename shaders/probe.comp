@@ -13,12 +13,17 @@ layout(local_size_x = 64) in;
 #include "texture.glsl"
 #include "intersect.glsl"
 #include "normal_map.glsl"
+#include "fresnel.glsl"
+#include "microfacet.glsl"
+#include "physical.glsl"
 #include "surfel.glsl"
 #include "impulse.glsl"
 #include "bsdf.glsl"
 #include "scatter.glsl"
 #include "environment.glsl"
 #include "light_tree.glsl"
+#include "sun.glsl"
+#include "profile.glsl"
 #include "luminaire.glsl"
 #include "sensor.glsl"
 
@@ -49,6 +54,8 @@ const uint NUMBERS = 17u;             // in: pixel, sample, block, seed; out: th
 const uint COVERAGE = 18u;            // in: pixel, sample, ray, seed; object, triangle; out: salt, number
 const uint CHOOSE_BY_TREE = 20u;      // in: point, random; normal, further bits; out: index (NONE: none), probability
 const uint TREE_PROBABILITY = 21u;    // in: point, place among the paths; normal; out: probability
+const uint SAMPLE_SUN = 22u;          // in: u, luminaire; out: direction, density
+const uint INTENSITY = 23u;           // in: direction, luminaire (spot or photometric); out: what its intensity is multiplied by
 const uint SIN_COS = 19u;             // in: turns; y, x; out: sin and cos; angle(y, x)
 
 layout(set = 0, binding = 7, std430) writeonly buffer Out { uvec4 results[]; };
@@ -64,10 +71,23 @@ void write_hit(uint id, bool found, Hit hit) {
     results[2u * id + 1u] = uvec4(floatBitsToUint(hit.barycentric), 0u, 0u);
 }
 
-// A surface at the origin whose normal is +z, seen from outside.
+// The bit of a material that says that its surface is seen from inside.
+const uint INSIDE = 0x80000000u;
+
+// A surface at the origin whose normal is +z; the first texture coordinate grows along +x.
 Surfel upward(uint material) {
-    return Surfel(vec3(0.0), vec3(0.0), vec3(0.0, 0.0, 1.0), vec3(0.0, 0.0, 1.0), material, true, vec2(0.0), vec3(1.0),
-                  vec4(0.0), vec3(0.0, 0.0, 1.0), vec3(0.0));
+    Surfel s;
+    s.position = vec3(0.0);
+    s.position_error = vec3(0.0);
+    s.geometric_normal = vec3(0.0, 0.0, 1.0);
+    s.shading_normal = vec3(0.0, 0.0, 1.0);
+    s.material = material & ~INSIDE;
+    s.front = (material & INSIDE) == 0u;
+    s.uv = vec2(0.0);
+    s.colour = vec3(1.0);
+    s.tangent = vec4(1.0, 0.0, 0.0, 1.0);
+    s.horizon = vec3(0.0, 0.0, 1.0);
+    return s;
 }
 
 void main() {
@@ -101,7 +121,8 @@ void main() {
     case BSDF: {
         Surfel s = upward(x.w);
         vec3 wo = uintBitsToFloat(x.xyz);
-        Material material = load_material(x.w);
+        Material material = load_material(s.material);
+        if (PHYSICAL) find_lobes(s, material, wo);
         vec4 f = bsdf_and_pdf(s, material, wo, uintBitsToFloat(y.xyz));
         f.w *= 1.0 - impulses(s, material, wo).probability;
         result = floatBitsToUint(f);
@@ -116,7 +137,8 @@ void main() {
     case SCATTER: {
         Surfel s = upward(x.w);
         vec3 wo = uintBitsToFloat(x.xyz);
-        Material material = load_material(x.w);
+        Material material = load_material(s.material);
+        if (PHYSICAL) find_lobes(s, material, wo);
         Scattering next = scatter(s, material, impulses(s, material, wo), wo, y);
         results[2u * id] = floatBitsToUint(vec4(next.wi, next.pdf));
         results[2u * id + 1u] = floatBitsToUint(vec4(next.weight, next.eta2));
@@ -135,6 +157,17 @@ void main() {
         float density;
         vec3 wi = sample_environment(x.xy, density);
         result = floatBitsToUint(vec4(wi, density));
+        break;
+    }
+    case SAMPLE_SUN: {
+        Luminaire sun = load_luminaire(x.z);
+        result = floatBitsToUint(vec4(sample_sun(sun, uintBitsToFloat(x.xy)), sun_density(sun)));
+        break;
+    }
+    case INTENSITY: {
+        Luminaire light = load_luminaire(x.w);
+        vec3 direction = uintBitsToFloat(x.xyz);
+        result.x = floatBitsToUint(light.kind == SPOT ? spot_falloff(light, direction) : photometric_intensity(light, direction));
         break;
     }
     case ENVIRONMENT_AT: {

@@ -7,7 +7,8 @@ const uint SURE_IMPULSES = 8u;
 const float AMPLE_THROUGHPUT = 1e20;
 
 // The share of light that a surface does not extinguish, for the channel that loses least.
-float survival(Material material) {
+float survival(Surfel s, Material material) {
+    if (is_physical(material)) return min(largest(hemispherical_albedo(s.lobes.p)), 1.0);
     vec3 albedo = material.lambert;
     if (GLOSSY) albedo += material.glossy;
     if (is_coated(material)) albedo = max(material.reflection, albedo);
@@ -18,8 +19,8 @@ float survival(Material material) {
 // The density with which a path goes on to a direction that it chooses with the density `pdf`: extinction has to let it live. What the
 // power heuristic has to know; literal extinction is left out: its survivors do not stand for those that ended. `scattered` is the
 // throughput that roulette sees (`roulette_throughput`), times f cos.
-float path_pdf(float pdf, vec3 scattered, Material material) {
-    if (EXTINCTION == EXTINCTION_SURFACE) return pdf * survival(material);
+float path_pdf(float pdf, vec3 scattered, Surfel s, Material material) {
+    if (EXTINCTION == EXTINCTION_SURFACE) return pdf * survival(s, material);
     if (EXTINCTION == EXTINCTION_THROUGHPUT) return min(largest(scattered) / SURE_THROUGHPUT, pdf);
     return pdf;
 }
@@ -52,9 +53,9 @@ Scattering scatter(Surfel s, Material material, Impulses i, vec3 wo, uvec4 rando
     vec4 f = bsdf_and_pdf(s, material, wo, wi);
     f.w *= rest;
     // Without a second lobe the cosine cancels exactly.
-    bool lambert_only = !GLOSSY && !COATS && DIRECTIONS != DIRECTIONS_UNIFORM;
+    bool lambert_only = !GLOSSY && !COATS && !PHYSICAL && DIRECTIONS != DIRECTIONS_UNIFORM;
     vec3 weight = vec3(0.0);
     if (lambert_only) weight = f.w > 0.0 ? material.lambert / rest : vec3(0.0);
-    else if (f.w > 0.0) weight = f.rgb * (dot(s.shading_normal, wi) / f.w);
-    return Scattering(wi, weight, f.w, 1.0);
+    else if (f.w > 0.0) weight = f.rgb * (cosine_at(s, wi) / f.w);
+    return Scattering(wi, weight, f.w, dilution(s, material, wi));
 }

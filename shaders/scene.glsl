@@ -19,21 +19,29 @@ layout(constant_id = 14) const bool MAP_TRANSFORMS = true;     // some map is mo
 layout(constant_id = 15) const bool ENVIRONMENT_IMAGE = true;  // that light has an image
 layout(constant_id = 16) const bool ENVIRONMENT_SAMPLING = true;    // light is sampled from there
 layout(constant_id = 17) const bool LIGHT_TREE = true;         // luminaires are chosen by a tree over them
-layout(constant_id = 18) const bool TANGENTS = true;           // some mesh has tangents
-layout(constant_id = 19) const bool NORMAL_MAPS = true;        // some material has a map that bends the shading normal
-layout(constant_id = 20) const bool ORTHOGRAPHIC = false;
-layout(constant_id = 21) const bool SOBOL = false;
+layout(constant_id = 18) const bool SPOTS = true;              // some point luminaire shines into a cone
+layout(constant_id = 19) const bool PROFILES = true;           // some point luminaire has measured intensities
+layout(constant_id = 20) const bool SUNS = true;               // some luminaire is a disc at infinity
+layout(constant_id = 21) const bool PHYSICAL = true;           // some material is a metallic-roughness surface
+layout(constant_id = 22) const bool ROUGH_TRANSMISSION = true; // some of these let light through
+layout(constant_id = 23) const bool VOLUMES = true;            // some of these are bodies that absorb
+layout(constant_id = 24) const bool CLEARCOATS = true;         // some of these have a coat
+layout(constant_id = 25) const bool ANISOTROPY = true;         // some of these are brushed
+layout(constant_id = 26) const bool TANGENTS = true;           // some material needs to know where the texture's u grows
+layout(constant_id = 27) const bool NORMAL_MAPS = true;        // some material has a map that bends the shading normal
+layout(constant_id = 28) const bool ORTHOGRAPHIC = false;
+layout(constant_id = 29) const bool SOBOL = false;
 
 // The integrator's choices (src/scene/estimator.rs).
-layout(constant_id = 22) const bool SIMPLE = false;            // the simple ray tracer instead of the path tracer
-layout(constant_id = 23) const uint LIGHT_SAMPLING = 2u;
-layout(constant_id = 24) const bool SOLID_ANGLE = true;        // near triangles are sampled by solid angle
-layout(constant_id = 25) const uint DIRECTIONS = 2u;
-layout(constant_id = 26) const uint EXTINCTION = 3u;
-layout(constant_id = 27) const bool THRESHOLD = false;         // paths of small albedo end
+layout(constant_id = 30) const bool SIMPLE = false;            // the simple ray tracer instead of the path tracer
+layout(constant_id = 31) const uint LIGHT_SAMPLING = 2u;
+layout(constant_id = 32) const bool SOLID_ANGLE = true;        // near triangles are sampled by solid angle
+layout(constant_id = 33) const uint DIRECTIONS = 2u;
+layout(constant_id = 34) const uint EXTINCTION = 3u;
+layout(constant_id = 35) const bool THRESHOLD = false;         // paths of small albedo end
 
-layout(constant_id = 28) const bool TRANSPARENT = false;       // the camera does not see where its rays escape to, and they are counted
-layout(constant_id = 29) const bool SMOOTH_TERMINATOR = false; // rays leave from above the triangles of smooth meshes
+layout(constant_id = 36) const bool TRANSPARENT = false;       // the camera does not see where its rays escape to, and they are counted
+layout(constant_id = 37) const bool SMOOTH_TERMINATOR = false; // rays leave from above the triangles of smooth meshes
 
 const uint LIGHT_NONE = 0u;
 const uint LIGHT_DIRECT = 1u;
@@ -76,6 +84,8 @@ layout(set = 0, binding = 0, std140) uniform Frame {
     float lens_at_start;                  // what is left there of a ray's offset on the lens
     uint environment_rows;                // texels of the search among the rows of the environment
     uint environment_row;                 // and of that among the columns of one of them
+    uint first_sun;                       // in the luminaire table, of those that are discs at infinity
+    uint sun_count;
     vec4 filter_table[FILTER_TEXELS];     // inverse cumulative distribution of the pixel filter: 257 knots, in pixels
 } frame;
 
@@ -108,7 +118,7 @@ struct Material {
     uint emission_map;
     uint opacity_map;             // its alpha multiplies the opacity
     uint one_sided;               // 1 if only the outward side emits
-    uint thin;                    // 1 if it is a sheet whose two sides are one surface
+    uint kind;                    // 1 if it is a sheet whose two sides are one surface, plus twice its texel in `physical`, if it has one there
     float coat_transmittance;     // where COATS: of even light from outside, what reaches the base
     uint normal_map;              // textures that bend the shading normal, or NONE
     float normal_scale;           // factor to what lies along the surface
@@ -125,21 +135,24 @@ const uint POINT = 0u;
 const uint INFINITE = 1u;
 const uint AREA = 2u;
 const uint SURROUNDINGS = 3u;
+const uint SPOT = 4u;
+const uint PHOTOMETRIC = 5u;
+const uint SUN = 6u;
 
 // Without its slot of the alias table.
 struct Luminaire {
-    vec3 a;                  // point: position; infinite: unit vector towards the light; area: first corner
+    vec3 a;                  // point: position; infinite, sun: unit vector towards the light; area: first corner
     float ideal_probability; // of being chosen, for the power heuristic: what `triangle_density` has too
-    vec3 b;                  // area: second corner
-    float area;              // of the triangle
-    vec3 c;                  // area: third corner
-    float position_error;    // area: bound on the error of a point on the triangle, in each coordinate
-    vec3 normal;             // area: unit outward normal
+    vec3 b;                  // area: second corner; spot, photometric: unit vector along the axis
+    float area;              // of the triangle; spot: one minus the cosine of the outer angle; sun: of the radius
+    vec3 c;                  // area: third corner; photometric: unit vector to the horizontal angle of 0
+    float position_error;    // area: bound on the error of a point on the triangle, in each coordinate; spot: one over the edge's width, in cosines
+    vec3 normal;             // area: unit outward normal; photometric: unit vector to the horizontal angle of 90 degrees
     float one_sided;         // area: 1 if only the outward side emits
     vec3 radiance;           // intensity, irradiance or radiance (without its texture)
     float probability;       // of being chosen, to the last random number
     uint kind;
-    uint triangle;           // area: index into `triangles`
+    uint triangle;           // area: index into `triangles`; photometric: the texel of the profile
     uint material;           // area
 };
 layout(set = 0, binding = 6) uniform usamplerBuffer luminaires;
@@ -158,11 +171,15 @@ layout(set = 0, binding = 13) uniform usamplerBuffer environment_choice;
 // Vertex colours, three texels a triangle, where VERTEX_COLOURS.
 layout(set = 0, binding = 14) uniform usamplerBuffer colours;
 
-// Tangents of the corners with their handedness, three texels a triangle, where TANGENTS.
-layout(set = 0, binding = 16) uniform usamplerBuffer tangents;
 
 // The light tree (src/gpu/pack/light_tree.rs): a header, what is chosen beside the tree, nodes, paths.
 layout(set = 0, binding = 15) uniform usamplerBuffer light_tree;
+
+// Metallic-roughness surfaces and their tables (src/gpu/pack/physical.rs), where PHYSICAL.
+layout(set = 0, binding = 16) uniform usamplerBuffer physical;
+
+// Tangents of the corners with their handedness, three texels a triangle, where TANGENTS.
+layout(set = 0, binding = 17) uniform usamplerBuffer tangents;
 
 // No index.
 const uint NONE = 0xffffffffu;

@@ -9,9 +9,10 @@ struct Surfel {
     bool front;               // wo is on the outward side
     vec2 uv;                  // where TEXTURES
     vec3 colour;              // of the vertices, where VERTEX_COLOURS
-    vec4 tangent;             // where TANGENTS: where u grows, beside the shading normal, with the handedness; zero where the mesh has none
+    vec4 tangent;             // where TANGENTS: where u grows, beside the shading normal, and the handedness; zero where there is none
     vec3 horizon;             // where SMOOTH_TERMINATOR: the normal of the plane that parts above from below
     vec3 lift;                // where SMOOTH_TERMINATOR: by how much `position` was moved off the triangle
+    Lobes lobes;              // towards wo, where PHYSICAL and the material is such a surface
 };
 
 // Bounds on the error of a position; src/gpu/pack/luminaire.rs takes them over a whole triangle.
@@ -144,34 +145,75 @@ Surfel surfel(Hit hit, vec3 wo) {
         if (dot(n, wo) > 0.0) s.shading_normal = n;
     }
     if (SMOOTH_TERMINATOR) {
-        s.horizon = s.shading_normal;
-        s.lift = s.shading_normal != s.geometric_normal ? terminator_lift(hit, s.position, s.shading_normal) : vec3(0.0);
-        s.position += s.lift;
+        s.horizon = s.geometric_normal;
+        s.lift = vec3(0.0);
+        // What lets light through has no side from which alone it is lit.
+        if (s.shading_normal != s.geometric_normal && !lets_light_through(load_material(s.material))) {
+            s.horizon = s.shading_normal;
+            s.lift = terminator_lift(hit, s.position, s.shading_normal);
+            s.position += s.lift;
+        }
     }
     if (TANGENTS || NORMAL_MAPS) {
         vec3 outward_normal = s.front ? s.shading_normal : -s.shading_normal;
         s.tangent = TANGENTS ? tangent_at(hit, outward_normal) : vec4(0.0);
-        if (NORMAL_MAPS) {
-            Material material = load_material(s.material);
-            if (material.normal_map != NONE || material.bump_map != NONE) {
-                vec3 ab = b - a;
-                vec3 ac = c - a;
-                if (INSTANCES) {
-                    vec4 to_world[3];
-                    object_to_world(hit.object, to_world);
-                    ab = row_dot(to_world, ab);
-                    ac = row_dot(to_world, ac);
-                }
-                vec3 bent = mapped_normal(material, hit.triangle, ab, ac, s.uv, outward_normal, s.tangent);
-                s.shading_normal = guarded_normal(s.geometric_normal, wo, s.front ? bent : -bent);
-                if (TANGENTS) {
-                    s.tangent.xyz = beside(s.shading_normal, s.tangent.xyz);
-                    if (s.tangent.xyz == vec3(0.0)) s.tangent.w = 0.0;
-                }
+        Material material;
+        if (NORMAL_MAPS) material = load_material(s.material);
+        if (NORMAL_MAPS && (material.normal_map != NONE || material.bump_map != NONE)) {
+            vec3 ab = b - a;
+            vec3 ac = c - a;
+            if (INSTANCES) {
+                vec4 to_world[3];
+                object_to_world(hit.object, to_world);
+                ab = row_dot(to_world, ab);
+                ac = row_dot(to_world, ac);
+            }
+            vec3 bent = mapped_normal(material, hit.triangle, ab, ac, s.uv, outward_normal, s.tangent);
+            s.shading_normal = guarded_normal(s.geometric_normal, wo, s.front ? bent : -bent);
+            if (TANGENTS) {
+                s.tangent.xyz = beside(s.shading_normal, s.tangent.xyz);
+                if (s.tangent.xyz == vec3(0.0)) s.tangent.w = 0.0;
             }
         }
     }
     return s;
+}
+
+// The lobes of a metallic-roughness surface towards wo.
+void find_lobes(inout Surfel s, Material material, vec3 wo) {
+    if (!is_physical(material)) return;
+    Physical p = physical_at(material, s.uv, s.colour);
+    if (ANISOTROPY) {
+        vec3 outward = s.front ? s.shading_normal : -s.shading_normal;
+        vec2 sc = sin_cos_turns(p.anisotropy_rotation);
+        s.tangent.xyz = sc.y * s.tangent.xyz + sc.x * s.tangent.w * cross(outward, s.tangent.xyz);
+    }
+    s.lobes = physical_lobes(p, s.shading_normal, s.tangent.xyz, s.front, wo);
+}
+
+// What a choice of luminaires has to know of the receiver: the shading normal, of length 2 if light from both of its sides is scattered.
+vec3 receiver(Surfel s, Material material) {
+    bool both = ROUGH_TRANSMISSION && is_physical(material) && scatters_through(s.lobes.p);
+    return both ? 2.0 * s.shading_normal : s.shading_normal;
+}
+
+// What the body absorbs into which a ray leaves in this direction.
+vec3 inner_absorption(Surfel s, Material material, vec3 direction) {
+    bool inwards = VOLUMES && is_physical(material) && (dot(s.geometric_normal, direction) < 0.0) == s.front;
+    return inwards && s.lobes.p.body != 0u ? s.lobes.p.absorption : vec3(0.0);
+}
+
+// The cosine by which light from a direction counts.
+float cosine_at(Surfel s, vec3 wi) {
+    float cosine = dot(s.shading_normal, wi);
+    return ROUGH_TRANSMISSION ? abs(cosine) : cosine;
+}
+
+// By how much more what comes from wi is diluted than shares of energy are: eta^2 of what is refracted.
+float dilution(Surfel s, Material material, vec3 wi) {
+    if (!ROUGH_TRANSMISSION || !is_physical(material) || dot(s.shading_normal, wi) > 0.0) return 1.0;
+    float eta = bend(s.lobes);
+    return eta * eta;
 }
 
 // The material with its textures, and with the colours of the vertices.

@@ -56,7 +56,7 @@
 //! | 3 | Path Trace Function: emission, direct, indirect light | `path.glsl`: `extend_path`; [`reference::path`] | `gpu::pictures`, `reference::transport` | `cornell` |
 //! | 4 | Lighting Functions: direct light of a point, ambient | `luminaire.glsl`: `direct_light`; [`reference::luminaire`] | `gpu::pictures::inverse_square_and_none_at_infinity` | `simple`, `shadows` |
 //! | 5 | Intersection Problems: displacing the intersection | `surfel.glsl`: `offset_ray_origin` | `gpu::intersection::surfaces_do_not_hit_themselves` | all |
-//! | 6 | Shadows & Attenuation: shadow rays, inverse square, infinity | `luminaire.glsl`: `direct_light`; `intersect*.glsl`: `occluded` | `reference::light`, `gpu::intersection` | `shadows` |
+//! | 6 | Shadows & Attenuation: shadow rays, inverse square, infinity | `luminaire.glsl`: `direct_light`; `intersect*.glsl`: `occluded` | `reference::light`, `gpu::intersection` | `shadows`, `spotlights` |
 //! | 7 | Inefficient Integration: evenly distributed directions | `warp.glsl`: `uniform_hemisphere`; [`scene::Directions::Uniform`] | `reference::scattering`, `gpu::features::every_choice_of_the_estimator_equals_the_reference` | `directions` |
 //! | 8 | More Efficient Integration: cosine, BSDF | `warp.glsl`: `cosine_hemisphere`, `glossy_half_vector`; `bsdf.glsl`: `bsdf_direction` | `gpu::densities::everything_is_drawn_by_its_density`, `reference::scattering` | `directions` |
 //! | 9 | Image Loop: samples added up at the image; samples or time end it | `path_trace.comp`; [`render`]; [`sampling`] | `render::tests`, `sampling` | all |
@@ -64,13 +64,15 @@
 //! | 11 | Albedo Termination: a threshold | `path.glsl`: `THRESHOLD` | `reference::estimators` (furnaces) | `extinction` |
 //! | 12 | Area Luminaires: of any shape, by area or solid angle, with MIS | `luminaire.glsl`: `direct_light`, `is_near`; `warp.glsl`: `spherical_triangle` | `gpu::pictures::irradiance_of_a_triangle_lamp`, `reference::light` | `lamps`, `many-lights` |
 //! | 13 | Impulse Reflection: 60 % impulse, 40 % other | `impulse.glsl`: `impulses`; `scatter.glsl`: `scatter`; [`reference::impulse`] | `reference::impulses` | `mirror` |
-//! | 14 | Adding Transmission: refraction, BSDF over the sphere | `impulse.glsl`: `fresnel`, `refract_direction`; [`reference::impulse`] | `reference::impulses`, `gpu::features` ("glass") | `glass`, `furnace/glass` |
+//! | 14 | Adding Transmission: refraction, BSDF over the sphere | `fresnel.glsl`: `fresnel`, `refract_direction`; [`reference::fresnel`], [`reference::impulse`] | `reference::impulses`, `gpu::features` ("glass") | `glass`, `furnace/glass` |
 //! | 15 | Sensor Modelling: pixel filter, lens, projection, shift | `sensor.glsl`: `sensor_ray`; [`reference::sensor`] | `reference::sensor`, `gpu::sensor` | `lens`, `lens/orthographic` |
 //! | 16 | Assumptions: escaping light disappears, steady state, RGB | `path.glsl`: `extend_path`; [`scene::Environment`] where a scene asks for one | `reference::environment`, `gpu::features` ("open air") | `furnace`, `environment` |
 //!
 //! Beyond the slides: multiple importance sampling (`luminaire.glsl`: `emission_weight`, `power_heuristic`), a tree over many luminaires
-//! (`light_tree.glsl`: `choose_by_tree`; [`scene::light_tree`], [`reference::light_tree`]; `gpu::light_tree`, `reference::light_tree`), textures and holes
-//! (`texture.glsl`), an environment (`environment.glsl`), Owen-scrambled Sobol points ([`sampling::sobol`]). Where a line of a slide is wrong taken
+//! (`light_tree.glsl`: `choose_by_tree`; [`scene::light_tree`], [`reference::light_tree`]; `gpu::light_tree`, `reference::light_tree`), spots, suns and
+//! photometric lamps (`luminaire.glsl`: `spot_falloff`, `sunlight`; `sun.glsl`, `profile.glsl`; [`reference::sun`], [`reference::profile`]; `reference::directed`,
+//! `gpu::densities`), textures and holes (`texture.glsl`), an environment (`environment.glsl`), Owen-scrambled Sobol points ([`sampling::sobol`]), metallic-roughness surfaces with rough glass
+//! (`physical.glsl`, `microfacet.glsl`; [`scene::Physical`], [`reference::physical`]; `gpu::physical`, `reference::physical`). Where a line of a slide is wrong taken
 //! literally (the half vector, missing densities, emission counted twice), what it means is computed; the extinction without
 //! re-weighting and the threshold stay selectable ([`scene::PRESETS`]), because their errors are instructive.
 

@@ -198,6 +198,7 @@ fn structures_of_texels_are_laid_out_alike() {
     for (name, members) in [
         ("Triangle", layout::Triangle::MEMBERS),
         ("Material", layout::Material::MEMBERS),
+        ("Physical", layout::Physical::MEMBERS),
         ("Texture", layout::Texture::MEMBERS),
         ("EnvironmentTexel", layout::EnvironmentTexel::MEMBERS),
     ] {
@@ -255,9 +256,9 @@ fn twins() -> Vec<(&'static str, f64)> {
     use luminaire::gpu::pack::luminaire as bounds;
     use luminaire::gpu::probe::Function;
     use luminaire::gpu::specialization::{directions_number, extinction_number, light_sampling_number};
-    use luminaire::reference::{light_tree as choice, luminaire as light, normal_map, path, scatter};
+    use luminaire::reference::{light_tree as choice, luminaire as light, normal_map, path, physical, scatter};
     use luminaire::sampling::{CDF_NUMBERS, SENSOR_BLOCK};
-    use luminaire::scene::{Directions, Extinction, Filter, LightSampling, light_tree};
+    use luminaire::scene::{Directions, Extinction, Filter, LEAST_ALPHA, LightSampling, albedo_table, light_tree};
     use std::f64::consts::{FRAC_PI_4, PI};
 
     assert_eq!(Filter::Box.inverse_cdf(0.5).len().div_ceil(4), layout::FILTER_TEXELS);
@@ -278,6 +279,19 @@ fn twins() -> Vec<(&'static str, f64)> {
         ("FILTER_TEXELS", layout::FILTER_TEXELS as f64),
         ("TRIANGLE_TEXELS", texels(size_of::<layout::Triangle>())),
         ("OBJECT_TEXELS", texels(size_of::<layout::Object>())),
+        ("PHYSICAL_TEXELS", texels(size_of::<layout::Physical>())),
+        ("ROUGH", albedo_table::ROUGH as f64),
+        ("STEEP", albedo_table::STEEP as f64),
+        ("ROUGHNESSES", albedo_table::ROUGHNESSES as f64),
+        ("COSINES", albedo_table::COSINES as f64),
+        ("LEAST_ALPHA", LEAST_ALPHA),
+        ("COAT_INDEX", physical::COAT_INDEX),
+        ("LEAST_SHARE", physical::LEAST_SHARE),
+        ("LEAST_COSINE", physical::LEAST_COSINE),
+        ("NARROW", physical::NARROW),
+        ("WIDE", physical::WIDE),
+        ("LEAST_ROUND", luminaire::reference::microfacet::LEAST_ROUND),
+        ("INSIDE", luminaire::gpu::probe::INSIDE.into()),
         ("MATERIAL_TEXELS", texels(size_of::<layout::Material>())),
         ("LUMINAIRE_TEXELS", texels(size_of::<layout::Luminaire>())),
         ("LIGHT_NODE_TEXELS", texels(size_of::<layout::LightNode>())),
@@ -294,6 +308,7 @@ fn twins() -> Vec<(&'static str, f64)> {
         ("LEAST_WIDTH", choice::LEAST_WIDTH.into()),
         ("LAST_FRACTION", choice::LAST_FRACTION),
         ("MOST_NUMBERS", choice::MOST_NUMBERS),
+        ("CONE_COSINE_MARGIN", choice::CONE_COSINE_MARGIN),
         ("TEXTURE_TEXELS", texels(size_of::<layout::Texture>())),
         ("NODE_TEXELS", texels(size_of::<CwBvhNode>())),
         ("STACK_SIZE", STACK_SIZE as f64),
@@ -318,6 +333,9 @@ fn twins() -> Vec<(&'static str, f64)> {
         ("INFINITE", LuminaireKind::Infinite as u32),
         ("AREA", LuminaireKind::Area as u32),
         ("SURROUNDINGS", LuminaireKind::Surroundings as u32),
+        ("SPOT", LuminaireKind::Spot as u32),
+        ("PHOTOMETRIC", LuminaireKind::Photometric as u32),
+        ("SUN", LuminaireKind::Sun as u32),
         ("LIGHT_NONE", light_sampling_number(LightSampling::None)),
         ("LIGHT_DIRECT", light_sampling_number(LightSampling::Direct)),
         ("LIGHT_MIS", light_sampling_number(LightSampling::Mis)),
@@ -343,6 +361,8 @@ fn twins() -> Vec<(&'static str, f64)> {
         ("CHOOSE_BY_TREE", Function::ChooseByTree as u32),
         ("TREE_PROBABILITY", Function::TreeProbability as u32),
         ("SPHERICAL_TRIANGLE", Function::SphericalTriangle as u32),
+        ("SAMPLE_SUN", Function::SampleSun as u32),
+        ("INTENSITY", Function::Intensity as u32),
         ("SAMPLE_ENVIRONMENT", Function::SampleEnvironment as u32),
         ("ENVIRONMENT_AT", Function::EnvironmentAt as u32),
         ("TEXTURE_AT", Function::TextureAt as u32),

@@ -19,5 +19,12 @@ libfuzzer_sys::fuzz_target!(init: {
         let parts = [material.lambert, material.glossy, material.emission, material.ambient, material.reflection];
         assert!(parts.iter().all(|part| part.is_finite() && part.min_element() >= 0.0), "{material:?}");
         assert!((0.0..=1.0).contains(&material.opacity), "{material:?}");
+        if let Some(surface) = &material.physical {
+            let shares = [surface.metallic, surface.roughness, surface.specular, surface.transmission, surface.clearcoat];
+            assert!(shares.iter().all(|share| (0.0..=1.0).contains(share)), "{material:?}");
+            let colours = [surface.base_color, surface.sheen_color];
+            assert!(colours.iter().all(|colour| colour.min_element() >= 0.0 && colour.max_element() <= 1.0), "{material:?}");
+            assert!((1.0..=100.0).contains(&surface.ior), "{material:?}");
+        }
     }
 });

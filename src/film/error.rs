@@ -12,8 +12,9 @@ use super::error_estimate::ErrorEstimate;
 use super::pixel_error::{PixelError, relative_squares};
 use std::collections::BTreeMap;
 
-/// The truth of 95 % of all values is within so many standard errors: Student's t for 60 degrees of freedom, about 7 of each of 9 pixels.
-pub const INTERVAL_95: f64 = 2.0;
+/// The truth of 95 % of all values is within so many standard errors: the normal distribution's. Student's t for the 63 contrasts of 9 pixels would be 2.0, but averaged over
+/// pixels that differ, the errors are a little large for most of them.
+pub const INTERVAL_95: f64 = 1.96;
 
 /// What a promise about the error allows at most for chance, where few pixels hold the error.
 const MOST_CARE: f64 = 1.25;
@@ -268,6 +269,19 @@ mod tests {
             (others.sum::<f64>() / 8.0).sqrt() as f32
         });
         assert!((total.relative() / before.relative() - 1.0).abs() < 0.01);
+    }
+
+    /// Beside a lamp the neighbours' mean is the lamp's: a bright sample in a dark pixel there is a firefly by what most neighbours show.
+    #[test]
+    fn a_firefly_beside_a_lamp_is_told_apart() {
+        let mut film = film(64, 0.1, |x, y| if y == 20 && (21..23).contains(&x) { 70.0 } else { 1.0 });
+        assert_eq!(film.error().unwrap().fireflies, 0);
+        // Two of its eight neighbours are the lamp.
+        let at = 21 * SIZE as usize + 21;
+        film.sums[at][2] = film.sums[at][2].map(|sum| sum + 64.0 * 9.0);
+        let errors = film.error_map().unwrap();
+        assert!(errors.firefly[at]);
+        assert_eq!(errors.total.unwrap().fireflies, 1);
     }
 
     /// The same film in another unit of light: the same errors, the same fireflies. Powers of two change no digit.

@@ -11,7 +11,8 @@ use std::ops::Range;
 /// A pixel is a firefly if few of its blocks hold its radiance: at most three of seven or eight, two of four to six (the variance of the mean, if they were
 /// independent, is the mean's square if one of them does; with three of eight and of seven 0.24 and 0.22 of that, with four of eight 0.14, with three of six 0.2) ...
 const FIREFLY_VARIANCE: f64 = 0.2;
-/// ... and that is so many times its neighbours',
+/// ... and that is so many times its neighbours', by the lower of their mean and their median: beside a lamp the mean is the lamp's, and would hide a bright sample
+/// among dark pixels,
 const FIREFLY_CONTRAST: f64 = 5.0;
 /// or this part of the picture's half-power mean where they are darker.
 const FIREFLY_FLOOR: f64 = 1e-3;
@@ -65,9 +66,11 @@ impl Film {
         });
         let firefly = Rows::new(rows(1), |pixel| {
             let (Own { channels: [.., grey], known }, [.., expected]) = (own.at(pixel), expected.at(pixel));
+            let stands_out = |usual: f64| grey.mean > FIREFLY_CONTRAST * (usual + FIREFLY_FLOOR * half_power_mean);
+            let others = || self.around(pixel).filter(|j| *j != pixel).map(|j| own.at(j).channels[3].mean);
             !known
                 || grey.naive > FIREFLY_VARIANCE * grey.mean * grey.mean
-                    && grey.mean > FIREFLY_CONTRAST * (expected + FIREFLY_FLOOR * half_power_mean)
+                    && (stands_out(*expected) || median(others().collect()).is_some_and(stands_out))
         });
         // By which the others count, whatever the unit of the light.
         let unit = (half_power_mean * half_power_mean).max(f64::MIN_POSITIVE);
@@ -192,6 +195,13 @@ fn weighted_mean(values: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
         weights += weight;
     }
     (weights > 0.0).then(|| sum / weights)
+}
+
+/// The median of some values, the mean of the middle two where they are even in number; none if there are none.
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    let lower = values.len().checked_sub(1)? / 2;
+    Some(0.5 * (values[lower] + values[values.len() / 2]))
 }
 
 /// The three that are colours of four.

@@ -38,6 +38,12 @@ pub enum LuminaireKind {
     Area = 2,
     /// The environment, all around.
     Surroundings = 3,
+    /// A point that shines into a cone.
+    Spot = 4,
+    /// A point with measured intensities.
+    Photometric = 5,
+    /// A disc at infinity.
+    Sun = 6,
 }
 
 /// Name and byte offset of a member.
@@ -123,8 +129,10 @@ shared! {
         environment_rows: u32,
         /// And of that among the columns of one of them.
         environment_row: u32,
-        /// To a multiple of 16 bytes.
-        padding: [u32; 2],
+        /// In the luminaire table, the first of those that are discs at infinity.
+        first_sun: u32,
+        /// How many these are.
+        sun_count: u32,
         /// The filter's inverse cumulative distribution: 257 knots, in pixels.
         filter_table: [[f32; 4]; FILTER_TEXELS],
     }
@@ -219,8 +227,8 @@ shared! {
         opacity_map: u32,
         /// 1 if only the outward side emits.
         one_sided: u32,
-        /// 1 if it is a sheet whose two sides are one surface.
-        thin: u32,
+        /// 1 if it is a sheet whose two sides are one surface, plus twice the texel of its [`Physical`], if it has one.
+        kind: u32,
         /// Of even light from outside, what a coat lets through to the base.
         coat_transmittance: f32,
         /// The one that is a map of normals.
@@ -235,21 +243,83 @@ shared! {
 }
 
 shared! {
+    /// A metallic-roughness surface (binding 16): ten texels, which `load_physical` reads.
+    Physical {
+        /// Base colour.
+        base: [f32; 3],
+        /// Share of metal.
+        metallic: f32,
+        /// Tint of the dielectric's reflection.
+        specular_color: [f32; 3],
+        /// Its strength.
+        specular: f32,
+        /// Natural logarithm of what is absorbed in a unit of length inside.
+        absorption: [f32; 3],
+        /// Perceptual roughness.
+        roughness: f32,
+        /// A metal's index of refraction.
+        conductor_eta: [f32; 3],
+        /// Strength of the anisotropy.
+        anisotropy: f32,
+        /// A metal's extinction coefficient.
+        conductor_k: [f32; 3],
+        /// In turns, from the tangent.
+        anisotropy_rotation: f32,
+        /// A metal's reflectance, averaged over directions.
+        conductor_average: [f32; 3],
+        /// Index of refraction; 0: infinite.
+        ior: f32,
+        /// Share of what enters that goes through.
+        transmission: f32,
+        /// Strength of the coat.
+        clearcoat: f32,
+        /// Its perceptual roughness.
+        clearcoat_roughness: f32,
+        /// Texel of the table of its index.
+        rows: u32,
+        /// A texture, or [`NONE`].
+        base_map: u32,
+        /// Four times a texture, and a channel; or [`NONE`]. So are the next ones, but for those of colours.
+        metallic_map: u32,
+        /// The same.
+        roughness_map: u32,
+        /// A texture.
+        anisotropy_map: u32,
+        /// Texture and channel.
+        specular_map: u32,
+        /// A texture.
+        specular_color_map: u32,
+        /// Texture and channel.
+        transmission_map: u32,
+        /// The same.
+        clearcoat_map: u32,
+        /// The same.
+        clearcoat_roughness_map: u32,
+        /// 1 if it has an index and an extinction coefficient in place of the base colour.
+        conductor: u32,
+        /// 1 if somebody may be inside.
+        body: u32,
+        /// To a multiple of 16 bytes.
+        padding: u32,
+    }
+}
+
+shared! {
     /// An entry of the luminaire table (binding 6): seven texels, which `load_luminaire` reads.
     Luminaire {
-        /// Position, direction towards the light, or first corner.
+        /// Position, direction towards the light (of a disc: its middle), or first corner.
         a: [f32; 3],
         /// Probability of being chosen as the power heuristic has it, wherever the light is found.
         ideal_probability: f32,
-        /// Second corner.
+        /// Second corner; spot and photometric: unit vector along the axis.
         b: [f32; 3],
-        /// Area of the triangle.
+        /// Area of the triangle; one minus the cosine of a spot's outer angle, or of a disc's radius.
         area: f32,
-        /// Third corner.
+        /// Third corner; photometric: unit vector to the horizontal angle of 0.
         c: [f32; 3],
-        /// Bound on the error of a point on the triangle, in each coordinate.
+        /// Bound on the error of a point on the triangle, in each coordinate; spot: one over the width of its edge, in cosines.
         position_error: f32,
-        /// Unit outward normal of the triangle.
+        /// Unit outward normal of the triangle; photometric: unit vector to the horizontal angle of 90 degrees.
         normal: [f32; 3],
         /// 1 if only the outward side emits.
         one_sided: f32,
@@ -263,7 +333,7 @@ shared! {
         threshold: u32,
         /// Alias table: else that one.
         alias_index: u32,
-        /// Area: the triangle, as the kernel counts them.
+        /// Area: the triangle, as the kernel counts them; photometric: the texel of this buffer at which the profile begins.
         triangle: u32,
         /// Area: its material.
         material: u32,
@@ -273,7 +343,7 @@ shared! {
 }
 
 /// Texels at the beginning of the light tree (binding 15): the number of slots of what is chosen first, where nodes and paths begin, the probability
-/// of the tree; then that of the environment.
+/// of the tree; then that of the environment, and the slot of the first disc at infinity.
 pub const LIGHT_TREE_HEADER: usize = 2;
 
 shared! {
@@ -285,13 +355,13 @@ shared! {
         y: [f32; 4],
         /// The same.
         z: [f32; 4],
-        /// Its radius.
+        /// Its radius; negative where all light stays within a cone.
         radius: [f32; 4],
         /// Relative intensity; 0: there is no such child.
         strength: [f32; 4],
         /// Axis of the normals, x and y in 16 bits each.
         axis_xy: [u32; 4],
-        /// Its z, and the sine around it, negative if both sides emit.
+        /// Its z, and the sine around it, negative if both sides emit; or the cosine of the cone.
         axis_z_spread: [u32; 4],
         /// Index of a node, or that of a luminaire with the highest bit.
         link: [u32; 4],

@@ -6,8 +6,9 @@ use super::pack::texture::texel_count;
 use super::specialization::KernelModel;
 use super::vulkan::device::Device;
 use crate::memory::{available, gib};
-use crate::scene::{LightTree, LuminaireTable, Scene};
+use crate::scene::{LightTree, Luminaire, LuminaireTable, Profile, Scene};
 use crate::{Error, Result};
+use std::sync::Arc;
 
 /// Bytes of the compute BVH's nodes for each triangle: 8.0 to 11.2 were measured, on meshes of 38 to 2 880 000 triangles.
 const BVH_NODES: u64 = 12;
@@ -32,7 +33,7 @@ impl Budget {
     pub(super) fn of(scene: &Scene, table: &LuminaireTable, ray_query: bool, model: &KernelModel) -> Self {
         let features = &model.features;
         let triangles: u64 = scene.meshes.iter().map(|mesh| mesh.triangles.len() as u64).sum();
-        let textured = features.textures || features.holes;
+        let textured = features.textures || features.holes || features.anisotropy;
         let triangle = size_of::<layout::Triangle>()
             + if features.vertex_normals { size_of::<layout::VertexNormals>() } else { 0 }
             + if textured { size_of::<layout::TriangleUvs>() } else { 0 }
@@ -42,8 +43,17 @@ impl Budget {
         let texels = texel_count(&scene.textures);
         let image = scene.environment.as_ref().and_then(|environment| environment.image.as_ref());
         let tree = table.tree.as_ref().map_or(0, LightTree::bytes);
+        let mut profiles: Vec<&Arc<Profile>> = Vec::new();
+        for luminaire in &scene.luminaires {
+            if let Luminaire::Photometric { profile, .. } = luminaire
+                && !profiles.iter().any(|known| Arc::ptr_eq(known, profile))
+            {
+                profiles.push(profile);
+            }
+        }
+        let profiles: usize = profiles.iter().map(|profile| profile.bytes()).sum();
         Budget {
-            luminaires: (table.entries.len() * size_of::<layout::Luminaire>() + tree) as u64,
+            luminaires: (table.entries.len() * size_of::<layout::Luminaire>() + tree + profiles) as u64,
             geometry: triangles * triangle as u64 + objects,
             acceleration: triangles * if ray_query { ACCELERATION_STRUCTURE } else { BVH_NODES },
             textures: if textured { 8 * texels } else { 0 },

@@ -62,7 +62,14 @@ pub enum Function {
     ChooseByTree = 20,
     /// (point, place among the light tree's paths), (normal) to the probability of what is there.
     TreeProbability = 21,
+    /// (u, v, index into the luminaire table) to (direction to a disc at infinity, density).
+    SampleSun = 22,
+    /// (direction, index into the luminaire table) to what the intensity of a spot or a photometric luminaire is multiplied by.
+    Intensity = 23,
 }
+
+/// The bit of a material in the arguments of [`Function::Bsdf`] and [`Function::Scatter`] that says that the surface is seen from inside.
+pub const INSIDE: u32 = 1 << 31;
 
 /// Arguments or results of one call.
 pub type Call = [[u32; 4]; 2];

@@ -9,6 +9,7 @@ use super::pack::frame::{aim, estimate, frame, light};
 use super::pack::light_tree::light_tree;
 use super::pack::luminaire::luminaires;
 use super::pack::material::material;
+use super::pack::physical::physical;
 use super::pack::texture::textures;
 use super::specialization::KernelModel;
 use super::vulkan::binding::Binding;
@@ -22,7 +23,7 @@ use bytemuck::Pod;
 use glam::DVec3;
 use std::sync::Arc;
 
-/// Bindings 0 to 6 and 9 to 15.
+/// Bindings 0 to 6 and 9 to 17.
 pub(super) struct GpuScene {
     frame: Buffer,
     /// What `frame` holds.
@@ -48,6 +49,7 @@ impl GpuScene {
         ray_query: bool,
         adjust: impl FnOnce(&mut KernelModel),
     ) -> Result<Self> {
+        let scene = &*scene.with_tangents();
         let table = LuminaireTable::new(scene);
         let mut model = KernelModel::with(scene, &table);
         adjust(&mut model);
@@ -129,6 +131,7 @@ impl GpuScene {
             Binding::Texel(&self.lighting.environment_choice),
             colours,
             Binding::Texel(&self.lighting.light_tree),
+            Binding::Texel(&self.lighting.physical),
             tangents,
         ]
     }
@@ -141,21 +144,26 @@ struct Lighting {
     environment_texels: TexelBuffer,
     environment_choice: TexelBuffer,
     light_tree: TexelBuffer,
+    physical: TexelBuffer,
 }
 
 impl Lighting {
     fn new(device: &Arc<Device>, scene: &Scene, table: &LuminaireTable, places: &[MeshBvh]) -> Result<Self> {
-        let materials: Vec<_> = (0..scene.materials.len()).map(|i| material(scene, table, i)).collect();
+        let (physical, places_of_physical) = physical(scene);
+        let materials = places_of_physical.iter().enumerate();
+        let materials: Vec<_> = materials.map(|(i, physical)| material(scene, table, i, *physical)).collect();
         let (environment_texels, environment_choice) =
             scene.environment.as_ref().map(|sky| environment(sky, table.environment.as_ref())).unwrap_or_default();
         // Without one, zeros say so to a kernel that could use it.
-        let tree = table.tree.as_ref().map_or_else(|| vec![[0; 4]; layout::LIGHT_TREE_HEADER], light_tree);
+        let tree = table.tree.as_ref();
+        let tree = tree.map_or_else(|| vec![[0; 4]; layout::LIGHT_TREE_HEADER], |tree| light_tree(tree, table));
         Ok(Lighting {
             materials: texel_buffer(device, "materials", &materials)?,
             luminaires: texel_buffer(device, "luminaires", &luminaires(scene, table, places))?,
             environment_texels: texel_buffer(device, "environment", &environment_texels)?,
             environment_choice: texel_buffer(device, "environment choice", &environment_choice)?,
             light_tree: texel_buffer(device, "light tree", &tree)?,
+            physical: texel_buffer(device, "metallic-roughness surfaces", &physical)?,
         })
     }
 }

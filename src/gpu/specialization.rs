@@ -2,9 +2,9 @@
 
 use crate::scene::{
     AreaSampling, Directions, Environment, Extinction, Integrator, LightSampling, Luminaire, LuminaireTable, Material,
-    Projection, SampledLuminaire, Sampler, Scene,
+    Physical, Projection, SampledLuminaire, Sampler, Scene,
 };
-use glam::{Affine2, Affine3A, Vec3};
+use glam::{Affine2, Affine3A, DVec3, Vec3};
 
 macro_rules! features {
     ($($(#[$doc:meta])* $name:ident: $text:literal,)*) => {
@@ -72,7 +72,23 @@ features! {
     environment_sampling: "sampling of the environment",
     /// Luminaires are chosen by a tree over them.
     light_tree: "light tree",
-    /// Some mesh has tangents.
+    /// Some point luminaire shines into a cone.
+    spots: "spots",
+    /// Some point luminaire has measured intensities.
+    profiles: "photometric profiles",
+    /// Some luminaire is a disc at infinity.
+    suns: "sun discs",
+    /// Some material is a metallic-roughness surface.
+    physical: "metallic-roughness",
+    /// Some of these let light through.
+    rough_transmission: "rough transmission",
+    /// Some of these are bodies that absorb.
+    volumes: "absorbing bodies",
+    /// Some of these have a coat.
+    clearcoats: "clearcoats",
+    /// Some of these are brushed.
+    anisotropy: "anisotropy",
+    /// Some material needs to know where the texture's u grows.
     tangents: "tangents",
     /// Some material has a map that bends the shading normal.
     normal_maps: "normal maps",
@@ -103,20 +119,29 @@ impl KernelModel {
     pub(crate) fn with(scene: &Scene, table: &LuminaireTable) -> Self {
         let any = |kind: fn(&SampledLuminaire) -> bool| table.entries.iter().any(kind);
         let material = |uses: fn(&Material) -> bool| scene.materials.iter().any(uses);
+        let physical =
+            |uses: fn(&Physical) -> bool| scene.materials.iter().any(|m| m.physical.as_ref().is_some_and(uses));
         let features = Features {
             glossy: material(|m| m.glossy != Vec3::ZERO),
             vertex_normals: scene.meshes.iter().any(|m| !m.normals.is_empty()),
             instances: scene.objects.len() > 1
                 || scene.objects.iter().any(|o| o.object_to_world != Affine3A::IDENTITY || o.material.is_some()),
-            point_luminaires: any(|l| matches!(l, SampledLuminaire::Impulse(Luminaire::Point { .. }))),
+            point_luminaires: any(
+                |l| matches!(l, SampledLuminaire::Impulse(luminaire) if !matches!(luminaire, Luminaire::Infinite { .. })),
+            ),
             infinite_luminaires: any(|l| matches!(l, SampledLuminaire::Impulse(Luminaire::Infinite { .. }))),
             area_luminaires: any(|l| matches!(l, SampledLuminaire::Area(_))),
             environment: scene.environment.as_ref().is_some_and(Environment::emits),
             impulses: material(Material::has_impulse),
-            dielectrics: material(|m| m.has_impulse() && m.eta.is_some()),
+            dielectrics: material(|m| match m.physical {
+                Some(_) => m.transmits(),
+                None => m.has_impulse() && m.eta.is_some(),
+            }),
             textures: material(|m| {
+                let own = [m.maps.ambient, m.maps.lambert, m.maps.glossy, m.maps.emission];
                 m.bends_normal()
-                    || [m.maps.ambient, m.maps.lambert, m.maps.glossy, m.maps.emission].iter().any(Option::is_some)
+                    || own.iter().any(Option::is_some)
+                    || m.physical.as_ref().is_some_and(|physical| physical.maps.any())
             }),
             holes: material(Material::has_holes),
             thin: material(Material::is_sheet),
@@ -126,7 +151,15 @@ impl KernelModel {
             environment_image: scene.environment.as_ref().is_some_and(|e| e.emits() && e.image.is_some()),
             environment_sampling: any(|l| matches!(l, SampledLuminaire::Environment)),
             light_tree: table.tree.is_some(),
-            tangents: scene.meshes.iter().any(|m| !m.tangents.is_empty()),
+            spots: any(|l| matches!(l, SampledLuminaire::Impulse(Luminaire::Spot { .. }))),
+            profiles: any(|l| matches!(l, SampledLuminaire::Impulse(Luminaire::Photometric { .. }))),
+            suns: any(|l| matches!(l, SampledLuminaire::Sun(_))),
+            physical: material(|m| m.physical.is_some()),
+            rough_transmission: material(|m| m.physical.is_some() && m.transmits()),
+            volumes: material(|m| m.is_body() && m.physical.as_ref().is_some_and(|p| p.absorption() != DVec3::ZERO)),
+            clearcoats: physical(|p| p.clearcoat > 0.0),
+            anisotropy: physical(|p| p.anisotropy > 0.0),
+            tangents: material(Material::needs_tangents),
             normal_maps: material(Material::bends_normal),
         };
         KernelModel {
@@ -154,9 +187,9 @@ impl KernelModel {
 
     /// How the kernel finds light: where nothing is sampled, by chance alone gives the same numbers.
     fn light_sampling(&self) -> LightSampling {
-        let Features { point_luminaires, infinite_luminaires, area_luminaires, environment_sampling, .. } =
+        let Features { point_luminaires, infinite_luminaires, area_luminaires, environment_sampling, suns, .. } =
             self.features;
-        let sampled = point_luminaires || infinite_luminaires || area_luminaires || environment_sampling;
+        let sampled = point_luminaires || infinite_luminaires || area_luminaires || environment_sampling || suns;
         match self.integrator.estimator().light_sampling {
             LightSampling::Mis if !sampled => LightSampling::None,
             choice => choice,

@@ -2,7 +2,8 @@
 
 use crate::picture::{Crop, Development, Tone};
 use crate::scene::{
-    Environment, EnvironmentImage, FilmSettings, Mesh, Object, RenderSettings, Scene, Texture, Triangle,
+    Environment, EnvironmentImage, FilmSettings, Luminaire, Mesh, Object, Profile, RenderSettings, Scene, Texture,
+    Triangle,
 };
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -86,7 +87,7 @@ impl Provenance {
             (
                 "luminaires",
                 digest(|hash| {
-                    write(hash, luminaires);
+                    luminaires.iter().for_each(|luminaire| self::luminaire(hash, luminaire));
                     if let Some(Environment { radiance, image, rotation }) = environment {
                         write(hash, &(radiance, rotation));
                         if let Some(image) = image {
@@ -158,6 +159,7 @@ impl Provenance {
         let mut compare = |what: &str, own: &dyn std::fmt::Display, others: &dyn std::fmt::Display| {
             let (own, others) = (own.to_string(), others.to_string());
             if own != others {
+                let (own, others) = apart(&own, &others);
                 found.push(format!("{what} ({own} there, {others} here)"));
             }
         };
@@ -177,6 +179,28 @@ impl Provenance {
     }
 }
 
+/// What differs between two values with named parts, as `Debug` shows them: those parts alone; else the values.
+fn apart(own: &str, others: &str) -> (String, String) {
+    let parts = |text: &str| -> Option<Vec<String>> {
+        let (_, inner) = text.split_once("{ ")?;
+        let (inner, _) = inner.rsplit_once(" }")?;
+        // Within brackets a comma parts nothing.
+        let mut depth = 0i32;
+        let apart = |c: char| {
+            depth += i32::from("([{".contains(c)) - i32::from(")]}".contains(c));
+            c == ',' && depth == 0
+        };
+        Some(inner.split(apart).map(|part| part.trim().to_owned()).collect())
+    };
+    match (parts(own), parts(others)) {
+        (Some(a), Some(b)) if a.len() == b.len() => {
+            let (a, b): (Vec<_>, Vec<_>) = a.into_iter().zip(b).filter(|(a, b)| a != b).unzip();
+            (a.join(", "), b.join(", "))
+        }
+        _ => (own.to_owned(), others.to_owned()),
+    }
+}
+
 /// The digest of whatever `feed` feeds, as hexadecimal digits.
 fn digest(feed: impl FnOnce(&mut Sha256)) -> String {
     let mut hash = Sha256::new();
@@ -191,6 +215,16 @@ fn write(hash: &mut Sha256, value: &impl Debug) {
 
 fn floats(hash: &mut Sha256, values: &[f32]) {
     values.iter().for_each(|value| hash.update(value.to_le_bytes()));
+}
+
+/// Feeds a luminaire; the name of its profile makes no difference.
+fn luminaire(hash: &mut Sha256, luminaire: &Luminaire) {
+    let Luminaire::Photometric { position, direction, up, intensity, profile } = luminaire else {
+        return write(hash, luminaire);
+    };
+    let Profile { name: _, vertical, horizontal, candela } = &**profile;
+    write(hash, &(position, direction, up, intensity, vertical.len(), horizontal.len()));
+    [vertical, horizontal, candela].into_iter().for_each(|numbers| floats(hash, numbers));
 }
 
 fn geometry(meshes: &[Arc<Mesh>], objects: &[Object]) -> String {
@@ -209,4 +243,22 @@ fn geometry(meshes: &[Arc<Mesh>], objects: &[Object]) -> String {
             write(hash, &(mesh, object_to_world, material));
         }
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::apart;
+
+    #[test]
+    fn only_what_differs_is_said() {
+        let told = |own: &str, others: &str| apart(own, others);
+        let pair = |a: &str, b: &str| (a.to_owned(), b.to_owned());
+        assert_eq!(
+            told("P(E { a: X, b: Some(1), c: Y })", "P(E { a: X, b: None, c: Z })"),
+            pair("b: Some(1), c: Y", "b: None, c: Z")
+        );
+        assert_eq!(told("S { at: V(0, 1) }", "S { at: V(0, 2) }"), pair("at: V(0, 1)", "at: V(0, 2)"));
+        assert_eq!(told("S { at: 0 }", "P(E { a: X, b: Y })"), pair("S { at: 0 }", "P(E { a: X, b: Y })"));
+        assert_eq!(told("Sobol", "Independent"), pair("Sobol", "Independent"));
+    }
 }

@@ -21,6 +21,9 @@ impl Reference {
             let surfel = self.surfel(&hit, -direction);
             let base = surfel.lambert + surfel.glossy;
             albedo += match surfel.eta {
+                _ if surfel.physical.is_some() => {
+                    surfel.physical.map_or(DVec3::ZERO, |surface| surface.normal_albedo())
+                }
                 // As from straight above; on a black base too, which a map may have in places.
                 Some(eta) if surfel.transmission == DVec3::ZERO => {
                     base + surfel.reflection * fresnel(eta, 1.0) * (DVec3::ONE - base)

@@ -12,7 +12,11 @@ impl Surfel {
     /// The scattering function without the cosine, per steradian: Lambert and normalised Blinn-Phong.
     ///
     /// Zero unless `wi` is above the triangle *and* above the shading normal's plane: light would leak through walls.
+    /// Of a metallic-roughness surface the value of its lobes; what is refracted comes from below both.
     pub fn bsdf(&self, wo: DVec3, wi: DVec3) -> DVec3 {
+        if let Some(lobes) = self.lobes(wo) {
+            return if self.is_on_one_side(wi) { lobes.value_and_pdf(wi).0 } else { DVec3::ZERO };
+        }
         if !self.is_above(wi) {
             return DVec3::ZERO;
         }
@@ -45,7 +49,9 @@ impl Surfel {
 
     /// Whether light is scattered in other ways than by impulses, so that light sampling makes sense.
     pub fn scatters(&self) -> bool {
-        self.lambert != DVec3::ZERO || self.glossy != DVec3::ZERO
+        self.lambert != DVec3::ZERO
+            || self.glossy != DVec3::ZERO
+            || self.physical.is_some_and(|surface| surface.scatters())
     }
 }
 
@@ -58,6 +64,15 @@ pub fn glossy_normalization(m: f64) -> f64 {
 /// density.
 pub fn bsdf_direction(surfel: &Surfel, wo: DVec3, directions: Directions, [u, v]: [f64; 2], lobe: f64) -> DVec3 {
     let n = surfel.shading_normal;
+    if let Some(lobes) = surfel.lobes(wo) {
+        // Half of them from below, if light from there is scattered.
+        let side = if lobes.scatters_through() && lobe < 0.5 { -n } else { n };
+        return match directions {
+            Directions::Uniform => uniform_hemisphere(side, u, v),
+            Directions::Cosine => cosine_hemisphere(side, u, v),
+            Directions::Bsdf => lobes.direction([u, v], lobe),
+        };
+    }
     match directions {
         Directions::Uniform => uniform_hemisphere(n, u, v),
         Directions::Bsdf if lobe < glossy_share(surfel) => reflect(wo, glossy_half_vector(n, surfel.exponent, u, v)),
@@ -68,10 +83,26 @@ pub fn bsdf_direction(surfel: &Surfel, wo: DVec3, directions: Directions, [u, v]
 /// The density with which [`scatter`](super::scatter::scatter) chooses `wi`, per steradian, out of all there is to choose from: impulses take their
 /// share. Zero where nothing is scattered to, though the glossy lobe chooses such directions too.
 pub fn bsdf_pdf(surfel: &Surfel, wo: DVec3, wi: DVec3, directions: Directions) -> f64 {
-    if !surfel.is_above(wi) || !surfel.scatters() {
+    if !surfel.scatters() {
         return 0.0;
     }
     let n = surfel.shading_normal;
+    if let Some(lobes) = surfel.lobes(wo) {
+        let both = lobes.scatters_through();
+        if !surfel.is_on_one_side(wi) || (!both && !surfel.is_above(wi)) {
+            return 0.0;
+        }
+        let sides = if both { 0.5 } else { 1.0 };
+        let pdf = match directions {
+            Directions::Uniform => sides / TAU,
+            Directions::Cosine => sides * surfel.cosine(wi) / PI,
+            Directions::Bsdf => lobes.value_and_pdf(wi).1,
+        };
+        return (1.0 - surfel.impulse_probability(&surfel.impulses(wo))) * pdf;
+    }
+    if !surfel.is_above(wi) {
+        return 0.0;
+    }
     let cosine = n.dot(wi) / PI;
     let pdf = match directions {
         Directions::Uniform => 1.0 / TAU,

@@ -4,12 +4,13 @@
 //! glass or by a mirror is lost, however many samples there are. What has an area is found by paths, too, if they may be long enough. A few hundred
 //! rays tell how much is lost: from the luminaires onwards, and from what the camera sees towards them.
 
-use super::luminaire::Unoccluded;
+use super::luminaire::{Unoccluded, spot_falloff};
 use super::path::Vertex;
 use super::prepared_scene::Reference;
+use super::profile::photometric_intensity;
 use super::surfel::mean;
 use crate::sampling::{random4, ray_salt, uniform};
-use crate::scene::{Estimator, Integrator, LightSampling, Luminaire, Material, SampledLuminaire, Scene};
+use crate::scene::{Estimator, Integrator, LightSampling, Luminaire, Material, SampledLuminaire, Scene, one_minus_cos};
 use glam::{DMat3, DVec3};
 use std::f64::consts::TAU;
 
@@ -103,7 +104,7 @@ fn all_sampled(integrator: Integrator) -> Integrator {
 
 /// What is said where light is only met by chance, and some luminaires never are.
 fn never_met(scene: &Scene) -> Option<String> {
-    let these = match scene.luminaires.len() {
+    let these = match scene.luminaires.iter().filter(|luminaire| !luminaire.is_disc()).count() {
         0 => return None,
         1 => "the luminaire without an area".to_owned(),
         n => format!("the {n} luminaires without an area"),
@@ -192,16 +193,12 @@ impl Reference {
             "the key light".into()
         } else {
             // In the table are those that emit.
-            let emits = |luminaire: &Luminaire| match luminaire {
-                Luminaire::Point { intensity, .. } => intensity.element_sum() > 0.0,
-                Luminaire::Infinite { irradiance, .. } => irradiance.element_sum() > 0.0,
-            };
-            let own = (1..).zip(&self.scene.luminaires).filter(|(_, l)| emits(l)).nth(at);
+            let own = (1..).zip(&self.scene.luminaires).filter(|(_, l)| l.emits() && !l.is_disc()).nth(at);
             format!("[[luminaire]] {}", own.map_or(at + 1, |(number, _)| number))
         };
         let advice = match luminaire {
-            Luminaire::Point { .. } => "an area luminaire (a small mesh that emits)",
-            Luminaire::Infinite { .. } => "a distant mesh that emits, or an [environment] whose image has the sun,",
+            Luminaire::Infinite { .. } | Luminaire::Sun { .. } => "a sun with an `angle`, which paths find,",
+            _ => "an area luminaire (a small mesh that emits)",
         };
         let share = percent(share);
         Some(format!(
@@ -216,8 +213,8 @@ impl Reference {
         let mut sent = Sent::default();
         let mut met = 0.0;
         for ray in 0..RAYS {
-            let (mut origin, mut direction) = self.ray_from(luminaire, ray);
-            let mut light = 1.0;
+            let (mut origin, mut direction, weight) = self.ray_from(luminaire, ray);
+            let mut light = weight;
             for surfaces in 0..MOST_SURFACES {
                 let salt = ray_salt(ray, surfaces, 0, 0);
                 let Some(hit) = self.closest_hit(origin, direction, f64::INFINITY, salt) else { break };
@@ -226,8 +223,8 @@ impl Reference {
                 let [reflected, transmitted] = [impulses.reflection, impulses.transmission].map(mean);
                 let specular = reflected + transmitted;
                 if surfaces == 0 {
-                    met += 1.0;
-                    sent.first += specular;
+                    met += weight;
+                    sent.first += weight * specular;
                 }
                 if surfel.scatters() {
                     let landed = light * (1.0 - specular).max(0.0);
@@ -242,31 +239,46 @@ impl Reference {
                 origin = surfel.offset_ray_origin(direction);
             }
         }
-        sent.first /= f64::max(met, 1.0);
+        sent.first /= if met > 0.0 { met } else { 1.0 };
         sent
     }
 
-    /// A ray of a luminaire towards the sphere that holds the scene; together the rays are evenly distributed.
-    fn ray_from(&self, luminaire: &Luminaire, ray: u32) -> (DVec3, DVec3) {
+    /// A ray of a luminaire towards the sphere that holds the scene, or into its cone, and how much light is along it; together the rays are evenly
+    /// distributed.
+    fn ray_from(&self, luminaire: &Luminaire, ray: u32) -> (DVec3, DVec3, f64) {
         let (low, high) = self.scene.model_bounds();
         let (center, radius) = (0.5 * (low + high), 0.5 * (high - low).length());
         // Points of a spiral: evenly along one axis, around the other by the golden ratio.
         let u = (f64::from(ray) + 0.5) / f64::from(RAYS);
         let (sin, cos) = (TAU * (f64::from(ray) * 0.618_033_988_749_895).fract()).sin_cos();
+        // About an axis, up to one minus the cosine of an angle.
+        let about = |axis: DVec3, whole: f64| {
+            let down = u * whole;
+            let side = (down * (2.0 - down)).max(0.0).sqrt();
+            frame(axis) * DVec3::new(side * cos, side * sin, 1.0 - down)
+        };
         match luminaire {
-            Luminaire::Point { position, .. } => {
+            Luminaire::Spot { position, direction, inner, outer, .. } => {
+                let out = about(direction.as_dvec3(), one_minus_cos(f64::from(*outer)));
+                (position.as_dvec3(), out, spot_falloff(*direction, *inner, *outer, out))
+            }
+            Luminaire::Point { position, .. } | Luminaire::Photometric { position, .. } => {
                 let position = position.as_dvec3();
                 let sine2 = radius * radius / position.distance_squared(center);
                 let whole = if sine2 < 1.0 { sine2 / (1.0 + (1.0 - sine2).sqrt()) } else { 2.0 };
-                let down = u * whole;
-                let side = (down * (2.0 - down)).max(0.0).sqrt();
-                let axis = (center - position).try_normalize().unwrap_or(DVec3::Z);
-                (position, frame(axis) * DVec3::new(side * cos, side * sin, 1.0 - down))
+                let out = about((center - position).try_normalize().unwrap_or(DVec3::Z), whole);
+                let light = match luminaire {
+                    Luminaire::Photometric { direction, up, profile, .. } => {
+                        photometric_intensity(profile, *direction, *up, out)
+                    }
+                    _ => 1.0,
+                };
+                (position, out, light)
             }
-            Luminaire::Infinite { direction, .. } => {
+            Luminaire::Infinite { direction, .. } | Luminaire::Sun { direction, .. } => {
                 let direction = direction.as_dvec3();
                 let on_disc = radius * u.sqrt() * DVec3::new(cos, sin, 0.0);
-                (center - 2.0 * radius * direction + frame(direction) * on_disc, direction)
+                (center - 2.0 * radius * direction + frame(direction) * on_disc, direction, 1.0)
             }
         }
     }
@@ -306,7 +318,7 @@ impl Reference {
             return None;
         }
         let (at, light) = self.sample_luminaire(&surfel, random)?;
-        let cosine = surfel.shading_normal.dot(light.wi).max(0.0);
+        let cosine = surfel.cosine(light.wi);
         let radiance = mean(vertex.throughput * surfel.bsdf(wo, light.wi) * cosine * light.irradiance);
         (radiance > 0.0 && radiance.is_finite()).then_some((radiance, at, light))
     }
@@ -320,7 +332,9 @@ impl Reference {
                 return Some((surfaces, passed));
             };
             let surfel = self.surfel(&hit, -light.direction.normalize());
-            passed *= mean(surfel.transmission);
+            // Rough glass scatters what it lets through: that is found from there.
+            let physical = surfel.lobes(-light.direction.normalize());
+            passed *= mean(physical.map_or(surfel.transmission, |lobes| lobes.impulses()[1]));
             if passed == 0.0 {
                 return None;
             }

@@ -2,13 +2,15 @@
 
 use super::hit::{interpolate, texture_coordinates};
 use super::prepared_scene::Reference;
+use super::profile::photometric_intensity;
 use super::scatter::path_pdf;
+use super::sun::{one_minus_cosine, sample_sun};
 use super::surfel::{Surfel, offset_ray_origin, position_error};
 use super::warp::{solid_angle, spherical_triangle, uniform_triangle};
 use crate::film::Rays;
 use crate::sampling::uniform;
-use crate::scene::{AreaSampling, EmissiveTriangle, LightSampling, Luminaire, SampledLuminaire};
-use glam::DVec3;
+use crate::scene::{AreaSampling, EmissiveTriangle, LightSampling, Luminaire, SampledLuminaire, spot_edge};
+use glam::{DVec3, Vec3};
 
 /// Where a shadow ray to a point on a surface ends, short of the point: a relative distance far above the error of `t`.
 const BEFORE_TARGET: f64 = 1.0 - 1e-9;
@@ -54,7 +56,7 @@ impl Reference {
             return DVec3::ZERO;
         }
         let Some((_, light)) = self.sample_luminaire(surfel, random) else { return DVec3::ZERO };
-        let cosine = surfel.shading_normal.dot(light.wi).max(0.0);
+        let cosine = surfel.cosine(light.wi);
         let estimator = self.scene.integrator.estimator();
         let weight = match (light.pdf, estimator.light_sampling) {
             (Some(pdf), LightSampling::Mis) => {
@@ -62,7 +64,10 @@ impl Reference {
             }
             _ => 1.0,
         };
-        let radiance = weight * surfel.bsdf(wo, light.wi) * cosine * light.irradiance;
+        let mut radiance = weight * surfel.bsdf(wo, light.wi) * cosine * light.irradiance;
+        if let Some(passed) = surfel.inner_absorption(light.wi) {
+            radiance *= passed.passed(light.direction.length() * light.t_max);
+        }
         if radiance == DVec3::ZERO {
             return DVec3::ZERO;
         }
@@ -86,6 +91,12 @@ impl Reference {
             SampledLuminaire::Impulse(luminaire) => impulse(surfel, luminaire, probability),
             SampledLuminaire::Area(triangle) => {
                 self.point_on_triangle(surfel, triangle, [probability, ideal], uniform(random[0]), uniform(random[1]))
+            }
+            SampledLuminaire::Sun(sun) => {
+                let wi = sample_sun(sun, uniform(random[0]), uniform(random[1]));
+                let irradiance = sun.radiance / (sun.density() * probability);
+                let (pdf, origin) = (Some(ideal * sun.density()), surfel.offset_ray_origin(wi));
+                Some(Unoccluded { wi, irradiance, pdf, origin, direction: wi, t_max: f64::INFINITY })
             }
             SampledLuminaire::Environment => {
                 let (wi, density) = self.sample_environment([random[0], random[1]])?;
@@ -189,25 +200,53 @@ impl Reference {
         self.luminaires.area_probability(material, area) * density
     }
 
-    /// The same for a direction to the environment.
+    /// What a path that escapes in this direction finds of the discs at infinity, each with its weight; `pdf` is the density with which the path went
+    /// there, none if it comes from the camera or an impulse.
+    pub fn sunlight(&self, direction: DVec3, pdf: Option<f64>) -> DVec3 {
+        let light_sampling = self.scene.integrator.estimator().light_sampling;
+        let mut radiance = DVec3::ZERO;
+        for (entry, sun) in self.luminaires.suns() {
+            if one_minus_cosine(direction, sun.towards.as_dvec3()) <= sun.extent {
+                let light_pdf = self.sun_probability(entry) * sun.density();
+                radiance += emission_weight(light_sampling, pdf, light_pdf) * sun.radiance;
+            }
+        }
+        radiance
+    }
+
+    /// The density of light sampling for a direction to the environment, per steradian, the choice of the luminaire included.
     pub fn environment_pdf(&self, direction: DVec3) -> f64 {
         let tree = self.light_tree().map(|tree| tree.environment_probability);
         tree.unwrap_or_else(|| self.luminaires.environment_probability()) * self.environment_density(direction)
     }
 }
 
+/// The share of a spot's intensity that it sends along `out`, a unit vector.
+pub fn spot_falloff(direction: Vec3, inner: f32, outer: f32, out: DVec3) -> f64 {
+    let (edge, scale) = spot_edge(inner, outer);
+    ((edge - one_minus_cosine(out, direction.as_dvec3())) * scale).clamp(0.0, 1.0).powi(2)
+}
+
 /// A luminaire without an area: inverse-square law, or no attenuation at infinity.
 fn impulse(surfel: &Surfel, luminaire: &Luminaire, probability: f64) -> Option<Unoccluded> {
+    let point = |position: &Vec3, intensity: &Vec3, towards: &dyn Fn(DVec3) -> f64| {
+        let position = position.as_dvec3();
+        let to_light = position - surfel.position;
+        let wi = to_light.try_normalize()?;
+        let irradiance = intensity.as_dvec3() * towards(-wi) / to_light.length_squared() / probability;
+        let origin = surfel.offset_ray_origin(wi);
+        Some(Unoccluded { wi, irradiance, pdf: None, origin, direction: position - origin, t_max: 1.0 })
+    };
     match luminaire {
-        Luminaire::Point { position, intensity } => {
-            let position = position.as_dvec3();
-            let to_light = position - surfel.position;
-            let wi = to_light.try_normalize()?;
-            let irradiance = intensity.as_dvec3() / to_light.length_squared() / probability;
-            let origin = surfel.offset_ray_origin(wi);
-            Some(Unoccluded { wi, irradiance, pdf: None, origin, direction: position - origin, t_max: 1.0 })
+        Luminaire::Point { position, intensity } => point(position, intensity, &|_| 1.0),
+        Luminaire::Spot { position, direction, intensity, inner, outer } => {
+            point(position, intensity, &|out| spot_falloff(*direction, *inner, *outer, out))
         }
-        Luminaire::Infinite { direction, irradiance } => {
+        Luminaire::Photometric { position, direction, up, intensity, profile } => {
+            point(position, intensity, &|out| photometric_intensity(profile, *direction, *up, out))
+        }
+        // One with an extent is no impulse: `LuminaireTable` has it as a disc.
+        Luminaire::Infinite { direction, irradiance } | Luminaire::Sun { direction, irradiance, .. } => {
             let wi = -direction.as_dvec3();
             let irradiance = irradiance.as_dvec3() / probability;
             let origin = surfel.offset_ray_origin(wi);

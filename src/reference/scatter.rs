@@ -30,6 +30,9 @@ pub fn roulette_throughput(throughput: DVec3, bounce: u32, scattered: bool) -> D
 /// that loses least. Fresnel aside, so that it is the same for all directions. Never above 1: nothing makes a path heavier than the light it
 /// stands for.
 pub fn survival(surfel: &Surfel) -> f64 {
+    if let Some(surface) = &surfel.physical {
+        return surface.hemispherical_albedo().max_element().min(1.0);
+    }
     let base = surfel.lambert + surfel.glossy;
     let albedo = if surfel.is_coated() {
         surfel.reflection.max(base)
@@ -74,8 +77,8 @@ pub fn scatter(surfel: &Surfel, wo: DVec3, directions: Directions, [u, v, lobe]:
     let lobe = (lobe - p) / (1.0 - p);
     let wi = bsdf_direction(surfel, wo, directions, [u, v], lobe);
     let pdf = bsdf_pdf(surfel, wo, wi, directions);
-    let weight = if pdf > 0.0 { surfel.bsdf(wo, wi) * surfel.shading_normal.dot(wi) / pdf } else { DVec3::ZERO };
-    Scattered { wi, weight, pdf: Some(pdf), eta2: 1.0 }
+    let weight = if pdf > 0.0 { surfel.bsdf(wo, wi) * surfel.cosine(wi) / pdf } else { DVec3::ZERO };
+    Scattered { wi, weight, pdf: Some(pdf), eta2: surfel.dilution(wo, wi) }
 }
 
 /// The density with which a path goes on to `wi`, per steradian: it chooses that direction, and extinction lets it live. What the power
@@ -90,7 +93,7 @@ pub fn path_pdf(surfel: &Surfel, wo: DVec3, wi: DVec3, throughput: DVec3, estima
         Extinction::Surface => pdf * survival(surfel),
         Extinction::Throughput => {
             // The throughput behind the surface is this over `pdf`.
-            let scattered = throughput * surfel.bsdf(wo, wi) * surfel.shading_normal.dot(wi);
+            let scattered = throughput * surfel.bsdf(wo, wi) * surfel.cosine(wi) * surfel.dilution(wo, wi);
             (scattered.max_element() / SURE_THROUGHPUT).min(pdf)
         }
     }

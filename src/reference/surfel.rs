@@ -2,6 +2,7 @@
 
 use super::hit::{Hit, interpolate, texture_coordinates, vertex_colour};
 use super::normal_map::{Tangent, guarded_normal};
+use super::physical::{Lobes, PhysicalSurface};
 use super::prepared_scene::Reference;
 use super::rounding::gamma;
 use crate::scene::outward;
@@ -20,7 +21,7 @@ pub struct Surfel {
     pub geometric_normal: DVec3,
     /// Unit normal interpolated from the vertices where there are any, on the side of `geometric_normal` and of `wo`.
     pub shading_normal: DVec3,
-    /// The direction of the texture's u, beside the shading normal, where the mesh has tangents.
+    /// Where the texture's u grows, beside the shading normal; none where the material does not ask for it, or the mesh has none.
     pub tangent: Option<Tangent>,
     /// Where the terminator is smoothed: the interpolated normal that parts above from below in place of the triangle's.
     pub horizon: Option<DVec3>,
@@ -52,6 +53,8 @@ pub struct Surfel {
     pub coat_transmittance: f64,
     /// Probability of going on by an impulse, if the material states one.
     pub impulse_probability: Option<f64>,
+    /// The metallic-roughness surface that scatters in place of all these albedos, if it is one.
+    pub physical: Option<PhysicalSurface>,
 }
 
 impl Reference {
@@ -82,22 +85,28 @@ impl Reference {
                 }
             }
         }
+        let material = self.scene.material_of(object, triangle);
         let (mut horizon, mut lift) = (None, DVec3::ZERO);
-        if self.scene.integrator.estimator().smooth_terminator && shading_normal != geometric_normal {
+        // What lets light through has no side from which alone it is lit.
+        let smooth_terminator = self.scene.integrator.estimator().smooth_terminator && !material.transmits();
+        if smooth_terminator && shading_normal != geometric_normal {
             let normals = triangle.vertices.map(|v| mesh.normals[v as usize].as_dvec3());
             let normals = normals.map(|n| facing((normal_to_world * n).normalize_or_zero(), shading_normal));
             (horizon, lift) = (Some(shading_normal), terminator_lift(position, corners, normals, weights));
         }
-        let material = self.scene.material_of(object, triangle);
         let uv = texture_coordinates(mesh, triangle, weights);
         let map = |map: Option<u32>| self.map(map, uv).truncate();
         let outwards = if front { 1.0 } else { -1.0 };
-        let outward_normal = outwards * shading_normal;
-        let mut tangent = self.tangent(hit.object, hit.triangle, weights, outward_normal);
+        let mut outward_normal = outwards * shading_normal;
+        let mut tangent = match material.needs_tangents() {
+            true => self.tangent(hit.object, hit.triangle, weights, outward_normal),
+            false => None,
+        };
         if material.bends_normal() {
             let bent = self.mapped_normal(material, (mesh, triangle, corners), uv, outward_normal, tangent);
             shading_normal = guarded_normal(geometric_normal, wo, outwards * bent);
-            tangent = tangent.and_then(|tangent| tangent.beside(outwards * shading_normal));
+            outward_normal = outwards * shading_normal;
+            tangent = tangent.and_then(|tangent| tangent.beside(outward_normal));
         }
         let colour = vertex_colour(mesh, triangle, weights);
         Surfel {
@@ -126,6 +135,7 @@ impl Reference {
             thin: material.is_sheet(),
             coat_transmittance: self.coats[object.material.unwrap_or(triangle.material) as usize],
             impulse_probability: material.impulse_probability.map(f64::from),
+            physical: self.physical_surface(material, uv, colour, tangent, outward_normal),
         }
     }
 }
@@ -141,6 +151,38 @@ impl Surfel {
         self.horizon.unwrap_or(self.geometric_normal)
     }
 
+    /// What a metallic-roughness surface does with light towards `wo`; none if it is none.
+    pub fn lobes(&self, wo: DVec3) -> Option<Lobes> {
+        self.physical.map(|surface| Lobes::new(&surface, self.shading_normal, self.front, wo))
+    }
+
+    /// Whether a direction is on one side of both the triangle and the shading normal's plane.
+    pub fn is_on_one_side(&self, wi: DVec3) -> bool {
+        self.horizon().dot(wi) * self.shading_normal.dot(wi) > 0.0
+    }
+
+    /// The cosine by which light from a direction counts.
+    pub fn cosine(&self, wi: DVec3) -> f64 {
+        self.shading_normal.dot(wi).abs()
+    }
+
+    /// What a choice of luminaires has to know of the receiver: the shading normal, of length 2 if light from both of its sides is scattered.
+    pub fn receiver(&self) -> DVec3 {
+        let both = self.physical.is_some_and(|surface| surface.scatters_through());
+        if both { 2.0 * self.shading_normal } else { self.shading_normal }
+    }
+
+    /// The surface of the body that a ray which leaves in this direction goes through, if it absorbs.
+    pub fn inner_absorption(&self, direction: DVec3) -> Option<PhysicalSurface> {
+        let inwards = (self.geometric_normal.dot(direction) < 0.0) == self.front;
+        self.physical.filter(|surface| surface.body && surface.absorption != DVec3::ZERO && inwards)
+    }
+
+    /// By how much more a unit of what comes from `wi` is diluted than shares of energy are: `eta^2` of what is refracted.
+    pub fn dilution(&self, wo: DVec3, wi: DVec3) -> f64 {
+        if self.is_above(wi) { 1.0 } else { self.lobes(wo).map_or(1.0, |lobes| lobes.bend().powi(2)) }
+    }
+
     /// Whether what scatters lies under a smooth dielectric ([`crate::scene::Material::is_coated`]).
     pub fn is_coated(&self) -> bool {
         self.eta.is_some() && self.transmission == DVec3::ZERO && self.reflection != DVec3::ZERO && self.scatters()
@@ -148,10 +190,7 @@ impl Surfel {
 
     /// Where a ray that leaves in `direction` starts: far enough from the triangle's plane not to hit it again.
     pub fn offset_ray_origin(&self, direction: DVec3) -> DVec3 {
-        // What goes through the surface starts on it.
-        let through = self.horizon().dot(direction) < 0.0;
-        let start = if through { self.position - self.lift } else { self.position };
-        offset_ray_origin(start, self.position_error, self.geometric_normal, direction)
+        offset_ray_origin(self.position, self.position_error, self.geometric_normal, direction)
     }
 }
 

@@ -42,6 +42,8 @@ pub struct Progress {
     pub limits: Limits,
     /// The error as it was estimated when all pixels last had equally many samples; at the end, that of the picture.
     pub error: Option<ErrorEstimate>,
+    /// Where tiles have different shares of the samples: the samples a pixel, averaged over the pixels, with which a limit of the noise is to be met.
+    pub shared_aim: Option<f64>,
 }
 
 impl Progress {
@@ -61,8 +63,9 @@ impl Progress {
         let by_samples = self.limits.spp.map_or(0.0, |spp| self.spp() / wanted(spp));
         let by_time = self.limits.seconds.map_or(0.0, |seconds| self.seconds / seconds);
         // The squared error falls with the number of samples.
-        let by_noise = match (self.limits.noise, self.error) {
-            (Some(limit), Some(error)) => (limit / error.careful()).powi(2),
+        let by_noise = match (self.limits.noise, self.error, self.shared_aim) {
+            (Some(_), _, Some(aim)) => self.spp() / aim,
+            (Some(limit), Some(error), None) => (limit / error.careful()).powi(2),
             _ => 0.0,
         };
         by_samples.max(by_time).max(by_noise).min(1.0)
@@ -88,6 +91,8 @@ mod tests {
         assert_eq!(progress.seconds_left(), Some(2.0));
         assert_eq!(progress.mrays_per_second(), 2.0);
         assert_eq!(Progress { limits: Limits::default(), ..progress }.seconds_left(), None);
+        let limits = Limits { noise: Some(0.1), ..Limits::default() };
+        assert_eq!(Progress { limits, shared_aim: Some(50.0), ..progress }.fraction(), 0.1);
         let nearly_over = Progress { seconds: 90.0, ..progress };
         assert_eq!(nearly_over.fraction(), 0.9);
     }

@@ -133,6 +133,8 @@ impl Run {
     pub(super) fn aim_at_noise(&mut self) {
         self.schedule.aim(self.rendered.noise_aim);
         self.patches = Patches::new();
+        let shares = self.rendered.shares.as_ref();
+        self.rendered.progress.shared_aim = shares.map(|shares| shares.mean_samples(self.rendered.noise_aim));
     }
 
     /// Estimates the error and says whether it is below `limit`; if not, passes then end where to look again. Only where

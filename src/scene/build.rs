@@ -134,8 +134,10 @@ pub fn brighter(scene: &Scene, factor: f32) -> Scene {
     scene.materials.iter_mut().for_each(|material| material.emission *= factor);
     for luminaire in &mut scene.luminaires {
         match luminaire {
-            Luminaire::Point { intensity, .. } => *intensity *= factor,
-            Luminaire::Infinite { irradiance, .. } => *irradiance *= factor,
+            Luminaire::Point { intensity, .. }
+            | Luminaire::Spot { intensity, .. }
+            | Luminaire::Photometric { intensity, .. } => *intensity *= factor,
+            Luminaire::Infinite { irradiance, .. } | Luminaire::Sun { irradiance, .. } => *irradiance *= factor,
         }
     }
     scene.environment.iter_mut().for_each(|environment| environment.radiance *= factor);
@@ -153,7 +155,10 @@ pub fn transformed(scene: &Scene, scale: f32, shift: Vec3) -> Scene {
         object.object_to_world = map * object.object_to_world;
     }
     for luminaire in &mut scene.luminaires {
-        if let Luminaire::Point { position, intensity } = luminaire {
+        if let Luminaire::Point { position, intensity }
+        | Luminaire::Spot { position, intensity, .. }
+        | Luminaire::Photometric { position, intensity, .. } = luminaire
+        {
             *position = map.transform_point3(*position);
             *intensity *= scale * scale;
         }

@@ -15,10 +15,15 @@ impl Scene {
             _ if self.luminaires.is_empty() => Some(format!(
                 "{path}: no [[luminaire]], no [environment], and no material emits; the picture will be black"
             )),
-            Integrator::Path(estimator) if estimator.light_sampling == LightSampling::None => Some(format!(
-                "{path}: no path ever meets a luminaire without an area, and there is nothing else that emits: with light \
+            Integrator::Path(estimator)
+                if estimator.light_sampling == LightSampling::None
+                    && !self.luminaires.iter().any(|luminaire| luminaire.is_disc() && luminaire.emits()) =>
+            {
+                Some(format!(
+                    "{path}: no path ever meets a luminaire without an area, and there is nothing else that emits: with light \
                  sampling off (`none`) the picture will be black"
-            )),
+                ))
+            }
             _ => None,
         }
     }

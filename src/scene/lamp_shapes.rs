@@ -76,7 +76,7 @@ mod tests {
     fn triangle(corners: [[f32; 3]; 3]) -> Source {
         let corners = corners.map(Vec3::from);
         let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).as_dvec3().normalize_or_zero();
-        Source { entry: 0, corners, normal, two_sided: true, closed: false, strength: 1.0 }
+        Source { entry: 0, corners, normal, two_sided: true, closed: false, cone: None, strength: 1.0 }
     }
 
     #[test]

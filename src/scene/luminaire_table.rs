@@ -4,9 +4,10 @@ use super::environment::EnvironmentDistribution;
 use super::estimator::{Directions, Estimator, Extinction, Integrator, LightChoice, LightSampling};
 use super::lamp_shapes::lamp_shapes;
 use super::light_tree::{LightTree, Source};
-use super::luminaire::Luminaire;
+use super::luminaire::{Luminaire, one_minus_cos, spot_edge};
 use super::material::Material;
 use super::mesh::{outward, widen};
+use super::sun_disc::SunDisc;
 use super::world::Scene;
 use crate::sampling::AliasTable;
 use glam::{DVec3, Vec3};
@@ -38,10 +39,12 @@ impl EmissiveTriangle {
 /// One entry of the [`LuminaireTable`].
 #[derive(Debug, Clone)]
 pub enum SampledLuminaire {
-    /// A point luminaire or one at infinity.
+    /// A point luminaire of any kind, or one at infinity without an extent.
     Impulse(Luminaire),
     /// A triangle that emits.
     Area(EmissiveTriangle),
+    /// A disc at infinity.
+    Sun(SunDisc),
     /// The scene's environment.
     Environment,
 }
@@ -49,8 +52,8 @@ pub enum SampledLuminaire {
 /// All luminaires, and the alias table that chooses among them in proportion to their power.
 #[derive(Debug, Clone, Default)]
 pub struct LuminaireTable {
-    /// Point luminaires and those at infinity first, in the scene's order; then the emissive triangles, object by object; then
-    /// the environment.
+    /// Point luminaires and those at infinity without an extent first, in the scene's order; then the emissive triangles, object by object; then the discs
+    /// at infinity, in the scene's order; then the environment.
     pub entries: Vec<SampledLuminaire>,
     /// Chooses an index into `entries`.
     pub choice: AliasTable,
@@ -78,7 +81,7 @@ impl LuminaireTable {
     /// Collects the luminaires of a scene that emit anything.
     pub fn new(scene: &Scene) -> Self {
         let mut entries: Vec<SampledLuminaire> =
-            scene.luminaires.iter().cloned().map(SampledLuminaire::Impulse).collect();
+            scene.luminaires.iter().filter(|luminaire| !luminaire.is_disc()).map(impulse).collect();
         for (object_index, object) in scene.objects.iter().enumerate() {
             let to_world = widen(object.object_to_world);
             let mesh = &scene.meshes[object.mesh as usize];
@@ -97,9 +100,11 @@ impl LuminaireTable {
         }
         let (low, high) = scene.model_bounds();
         let (center, radius) = (0.5 * (low + high), 0.5 * (high - low).length());
-        let left_to_paths = left_to_paths(scene, &scene.integrator);
-        let environment =
-            scene.environment.as_ref().and_then(|environment| EnvironmentDistribution::new(environment, left_to_paths));
+        let environment = scene
+            .environment
+            .as_ref()
+            .and_then(|environment| EnvironmentDistribution::new(environment, left_to_paths(scene, &scene.integrator)));
+        entries.extend(scene.luminaires.iter().filter(|luminaire| luminaire.is_disc()).filter_map(disc));
         entries.extend(environment.as_ref().map(|_| SampledLuminaire::Environment));
         let exitance: Vec<f64> = scene.materials.iter().map(|material| exitance(scene, material)).collect();
         let powers: Vec<f64> = entries
@@ -107,6 +112,7 @@ impl LuminaireTable {
             .map(|entry| match entry {
                 SampledLuminaire::Impulse(luminaire) => impulse_power(luminaire, center, radius),
                 SampledLuminaire::Area(triangle) => exitance[triangle.material as usize] * triangle.area(),
+                SampledLuminaire::Sun(sun) => PI * radius * radius * sun.irradiance().element_sum() / 3.0,
                 SampledLuminaire::Environment => {
                     PI * radius * radius * environment.as_ref().map_or(0.0, |environment| environment.sampled)
                 }
@@ -144,20 +150,37 @@ impl LuminaireTable {
     pub fn ideal_probability(&self, entry: usize) -> f64 {
         match &self.entries[entry] {
             SampledLuminaire::Area(triangle) => self.area_probability(triangle.material, triangle.area()),
-            SampledLuminaire::Impulse(_) | SampledLuminaire::Environment => self.choice.pdf[entry],
+            SampledLuminaire::Impulse(_) | SampledLuminaire::Sun(_) | SampledLuminaire::Environment => {
+                self.choice.pdf[entry]
+            }
         }
+    }
+
+    /// The discs at infinity, with the number of each in the table; they stand there in a row.
+    pub fn suns(&self) -> impl Iterator<Item = (usize, &SunDisc)> {
+        let after = self.environment_entry().unwrap_or(self.entries.len());
+        // From behind, so that a table of a million triangles is not searched.
+        let is_sun = |entry: &&SampledLuminaire| matches!(entry, SampledLuminaire::Sun(_));
+        let count = self.entries[..after].iter().rev().take_while(is_sun).count();
+        let suns = self.entries[after - count..after].iter().zip(after - count..);
+        suns.filter_map(|(entry, index)| if let SampledLuminaire::Sun(sun) = entry { Some((index, sun)) } else { None })
+    }
+
+    /// Where the environment stands: last, if it is there. Without power, in a scene without extent, it is not.
+    fn environment_entry(&self) -> Option<usize> {
+        let last = self.entries.len().checked_sub(1)?;
+        matches!(self.entries[last], SampledLuminaire::Environment).then_some(last)
     }
 
     /// The probability of choosing the environment; 0 if there is none.
     pub fn environment_probability(&self) -> f64 {
-        // The last entry.
-        if self.environment.is_some() { self.choice.pdf.last().copied().unwrap_or(0.0) } else { 0.0 }
+        self.environment_entry().map_or(0.0, |entry| self.choice.pdf[entry])
     }
 }
 
 /// How much of a sky's mean radiance is left to paths that escape. Where they go by the BSDF, and nothing but Russian roulette by the whole path
-/// ends them, they find an even sky better than light sampling does. The lobes of a surface share its paths, so that a weak one has few: there a
-/// quarter of the mean is sampled.
+/// ends them, they find an even sky better than light sampling does. The lobes of a surface share its paths, so that a weak one has few: where a
+/// material in use has several, whatever its maps make of them, a quarter of the mean is sampled.
 fn left_to_paths(scene: &Scene, integrator: &Integrator) -> f64 {
     let Estimator { light_sampling, directions, extinction, albedo_threshold, .. } = integrator.estimator();
     let found = light_sampling == LightSampling::Mis
@@ -165,12 +188,17 @@ fn left_to_paths(scene: &Scene, integrator: &Integrator) -> f64 {
         && matches!(extinction, Extinction::Off | Extinction::Throughput)
         && albedo_threshold.is_none();
     let lobes = |m: &Material| [m.lambert != Vec3::ZERO, m.glossy != Vec3::ZERO, m.has_impulse()];
-    let several = |m: &Material| lobes(m).into_iter().filter(|has| *has).count() > 1;
-    match found {
-        false => 0.0,
-        true if scene.materials.iter().any(several) => 0.75,
-        true => 1.0,
+    let several = |m: &Material| match &m.physical {
+        Some(physical) => physical.metallic < 1.0 || physical.maps.metallic.is_some() || physical.clearcoat > 0.0,
+        None => lobes(m).into_iter().filter(|has| *has).count() > 1,
+    };
+    if !found {
+        return 0.0;
     }
+    // First by the materials, which are few: their triangles may be many.
+    let several = scene.materials.iter().any(several)
+        && scene.materials.iter().zip(scene.materials_in_use()).any(|(material, used)| used && several(material));
+    if several { 0.75 } else { 1.0 }
 }
 
 /// The tree over all entries that are somewhere and emit, if the estimator chooses by one; `entries` may have some of no power, which the table
@@ -199,6 +227,7 @@ fn light_tree(scene: &Scene, entries: &[SampledLuminaire], powers: &[f64]) -> Op
             normal,
             two_sided,
             closed: false,
+            cone: None,
             strength,
         };
         match entry {
@@ -214,7 +243,22 @@ fn light_tree(scene: &Scene, entries: &[SampledLuminaire], powers: &[f64]) -> Op
                 sources.push(source(corners, triangle.normal, two_sided, strength));
                 outer_powers[0] += own_power;
             }
-            SampledLuminaire::Impulse(Luminaire::Infinite { .. }) | SampledLuminaire::Environment => {
+            SampledLuminaire::Impulse(Luminaire::Spot { position, direction, intensity, inner, outer }) => {
+                let within = spot_flux(*inner, *outer) / (2.0 * PI * one_minus_cos(f64::from(*outer)));
+                let cone = source([*position; 3], direction.as_dvec3(), false, within * mean(*intensity));
+                sources.push(Source { cone: Some(f64::from(*outer)), ..cone });
+                outer_powers[0] += own_power;
+            }
+            SampledLuminaire::Impulse(Luminaire::Photometric { position, direction, intensity, profile, .. }) => {
+                let reach = profile.reach();
+                let within = profile.flux() / (2.0 * PI * one_minus_cos(reach));
+                let cone = source([*position; 3], direction.as_dvec3(), false, within * mean(*intensity));
+                sources.push(Source { cone: Some(reach), ..cone });
+                outer_powers[0] += own_power;
+            }
+            SampledLuminaire::Impulse(Luminaire::Infinite { .. } | Luminaire::Sun { .. })
+            | SampledLuminaire::Sun(_)
+            | SampledLuminaire::Environment => {
                 outer.push(index);
                 outer_powers.push(*own_power);
             }
@@ -244,13 +288,48 @@ fn exitance(scene: &Scene, material: &Material) -> f64 {
 /// with this center and radius.
 fn impulse_power(luminaire: &Luminaire, center: DVec3, radius: f64) -> f64 {
     let mean = |c: &Vec3| c.as_dvec3().element_sum() / 3.0;
+    // From far away only the solid angle of the sphere counts.
+    let solid_angle = |position: &Vec3| {
+        let sine2 = (radius * radius / position.as_dvec3().distance_squared(center)).min(1.0);
+        if sine2 < 1.0 { 2.0 * PI * sine2 / (1.0 + (1.0 - sine2).sqrt()) } else { 4.0 * PI }
+    };
     match luminaire {
-        Luminaire::Point { position, intensity } => {
-            // From far away only the solid angle of the sphere counts.
-            let sine2 = (radius * radius / position.as_dvec3().distance_squared(center)).min(1.0);
-            let solid_angle = if sine2 < 1.0 { 2.0 * PI * sine2 / (1.0 + (1.0 - sine2).sqrt()) } else { 4.0 * PI };
-            solid_angle * mean(intensity)
+        Luminaire::Point { position, intensity } => solid_angle(position) * mean(intensity),
+        // At most all of it, at most the brightest of it on the whole sphere: where the cone goes does not count, so that no light is without power.
+        Luminaire::Spot { position, intensity, inner, outer, .. } => {
+            spot_flux(*inner, *outer).min(solid_angle(position)) * mean(intensity)
         }
-        Luminaire::Infinite { irradiance, .. } => PI * radius * radius * mean(irradiance),
+        Luminaire::Photometric { position, intensity, profile, .. } => {
+            profile.flux().min(solid_angle(position) * profile.largest()) * mean(intensity)
+        }
+        Luminaire::Infinite { irradiance, .. } | Luminaire::Sun { irradiance, .. } => {
+            PI * radius * radius * mean(irradiance)
+        }
+    }
+}
+
+/// What a spot of the intensity 1 sends: within the inner cone all, and up to the outer one a third of it, as a square falls.
+fn spot_flux(inner: f32, outer: f32) -> f64 {
+    let (edge, scale) = spot_edge(inner, outer);
+    2.0 * PI * (edge - 2.0 / 3.0 / scale)
+}
+
+/// The entry of a luminaire without an extent: a disc of no size is a direction.
+fn impulse(luminaire: &Luminaire) -> SampledLuminaire {
+    SampledLuminaire::Impulse(match luminaire {
+        Luminaire::Sun { direction, irradiance, .. } => {
+            Luminaire::Infinite { direction: *direction, irradiance: *irradiance }
+        }
+        other => other.clone(),
+    })
+}
+
+/// The entry of a disc.
+fn disc(luminaire: &Luminaire) -> Option<SampledLuminaire> {
+    match *luminaire {
+        Luminaire::Sun { direction, irradiance, angle } => {
+            Some(SampledLuminaire::Sun(SunDisc::new(direction, irradiance, angle)))
+        }
+        _ => None,
     }
 }

@@ -1,6 +1,6 @@
 //! What surfaces are made of.
 
-use super::physical::Physical;
+use super::physical::{Physical, PhysicalMaps};
 use glam::Vec3;
 
 /// The surface's scattering and emission: normalised Blinn-Phong (slide "Surface Element Class") and impulses (slides "Impulse
@@ -113,18 +113,26 @@ impl Material {
     /// Whether light goes through the surface, beside what its opacity lets pass.
     pub fn transmits(&self) -> bool {
         let physical = self.physical.as_ref();
-        physical.is_some_and(|physical| physical.transmission > 0.0 && physical.metallic < 1.0)
+        physical.is_some_and(|physical| physical.transmission > 0.0 && physical.metallic < 1.0 && physical.ior != 0.0)
             || (self.transmission != Vec3::ZERO && self.eta.is_some())
     }
 
-    /// Whether anything is mirrored or refracted.
+    /// Whether anything is mirrored or refracted, unscattered.
     pub fn has_impulse(&self) -> bool {
-        self.reflection != Vec3::ZERO || self.transmits()
+        match &self.physical {
+            Some(physical) => physical.may_be_smooth(),
+            None => self.reflection != Vec3::ZERO || self.transmits(),
+        }
+    }
+
+    /// The index of refraction of what lies behind the outward normal over that in front of it; none: there is no Fresnel, or it is infinite.
+    pub fn index_of_refraction(&self) -> Option<f32> {
+        self.physical.as_ref().map_or(self.eta, |physical| Some(physical.ior).filter(|ior| *ior > 0.0))
     }
 
     /// Whether light that passes is bent, so that the surface has to be that of a closed body.
     pub fn bends(&self) -> bool {
-        self.transmits() && self.eta != Some(1.0) && !self.thin
+        self.transmits() && self.index_of_refraction() != Some(1.0) && !self.thin
     }
 
     /// Whether the surface is that of a body that light goes through, which its faces have to enclose.
@@ -152,6 +160,17 @@ impl Material {
     /// Whether what it does depends on the direction in which the texture's u grows.
     pub fn needs_tangents(&self) -> bool {
         self.normal_map.is_some() || self.physical.as_ref().is_some_and(Physical::needs_tangents)
+    }
+
+    /// Whether any of its numbers has a texture, or its normal.
+    pub fn has_maps(&self) -> bool {
+        let physical = self.physical.as_ref().is_some_and(|physical| physical.maps != PhysicalMaps::default());
+        physical || self.maps != Maps::default() || self.bends_normal()
+    }
+
+    /// Whether nothing is scattered, so that which way the surface faces makes no difference.
+    pub fn is_black(&self) -> bool {
+        self.physical.is_none() && self.lambert == Vec3::ZERO && self.glossy == Vec3::ZERO && !self.has_impulse()
     }
 
     /// Whether a ray may pass the surface as if it were not there.

@@ -4,6 +4,7 @@
 //! is what the files hold and what the GPU receives; the reference widens the same numbers to `f64`, so both tracers see
 //! the same scene to the last bit.
 
+pub mod albedo_table;
 pub mod build;
 mod coat;
 mod darkness;
@@ -20,11 +21,13 @@ mod material;
 mod mesh;
 mod overlap;
 mod physical;
+mod profile;
 pub(crate) mod rounding;
 mod sensor;
 mod sets;
 mod settings;
 mod studio_sky;
+mod sun_disc;
 mod tangents;
 mod texture;
 mod world;
@@ -40,13 +43,15 @@ pub use filter::Filter;
 pub use first_view::{FirstView, Side};
 pub use light_tree::LightTree;
 pub use load::{Choices, SceneFile, Sky, Up, load, load_with, scene_file, use_camera};
-pub use luminaire::Luminaire;
+pub use luminaire::{LEAST_ANGLE, Luminaire, one_minus_cos, photometric_frame, spot_edge};
 pub use luminaire_table::{EmissiveTriangle, LuminaireTable, SampledLuminaire};
 pub use material::{BumpMap, Maps, Material, NormalMap};
 pub use mesh::{Mesh, Object, Triangle};
 pub(crate) use mesh::{moved_box, outward, widen};
-pub use physical::{ChannelMap, Physical, PhysicalMaps};
+pub use physical::{ChannelMap, LEAST_ALPHA, Physical, PhysicalMaps, conductor_average, conductor_reflectance};
+pub use profile::Profile;
 pub use sensor::{Camera, Lens, Pivot, Projection, Sensor};
 pub use settings::{Exposure, FilmSettings, RenderSettings};
+pub use sun_disc::SunDisc;
 pub use texture::Texture;
 pub use world::Scene;

@@ -1,6 +1,6 @@
 //! The physically based surface of scenes that people have: metallic-roughness, as glTF 2.0 and its material extensions describe it.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 /// A metallic-roughness surface (Khronos, glTF 2.0, section 3.9 and appendix B, with the extensions `KHR_materials_*` named below). Where a material
 /// has one, it is all that scatters: the Blinn-Phong numbers and impulses of [`Material`](super::Material) beside it are zero; emission, opacity, `one_sided` and
@@ -93,6 +93,13 @@ pub struct PhysicalMaps {
     pub iridescence_thickness: Option<ChannelMap>,
 }
 
+impl PhysicalMaps {
+    /// Whether there is one.
+    pub fn any(&self) -> bool {
+        *self != PhysicalMaps::default()
+    }
+}
+
 /// One channel of a texture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ChannelMap {
@@ -129,4 +136,63 @@ impl Default for Physical {
             maps: PhysicalMaps::default(),
         }
     }
+}
+
+/// A lobe of microfacets narrower than this, in its `alpha`, is an impulse.
+pub const LEAST_ALPHA: f64 = 1e-4;
+
+impl Physical {
+    /// Natural logarithm of what is absorbed in a unit of length inside, per channel: 0 is clear.
+    pub fn absorption(&self) -> DVec3 {
+        let log = -DVec3::from_array(self.attenuation_color.as_dvec3().to_array().map(f64::ln));
+        if self.attenuation_distance > 0.0 && self.attenuation_distance.is_finite() {
+            log / f64::from(self.attenuation_distance)
+        } else {
+            DVec3::ZERO
+        }
+    }
+
+    /// Whether the surface may be smooth somewhere, so that there is an impulse in place of its narrowest microfacets: a map may make it so.
+    pub fn may_be_smooth(&self) -> bool {
+        let smooth = |roughness: f32, map: bool| map || f64::from(roughness).powi(2) < LEAST_ALPHA;
+        smooth(self.roughness, self.maps.roughness.is_some())
+            || (self.clearcoat > 0.0 && smooth(self.clearcoat_roughness, self.maps.clearcoat_roughness.is_some()))
+            // What is hardly bent goes straight on.
+            || (self.transmission > 0.0 && f64::from(self.roughness).powi(2) * f64::from(self.ior - 1.0) < LEAST_ALPHA)
+    }
+
+    /// What is asked for and not traced: names for a warning, in the words of the extensions of glTF.
+    pub fn not_modelled(&self) -> Vec<&'static str> {
+        let film = self.iridescence > 0.0;
+        let fibres = self.sheen_color != Vec3::ZERO;
+        let all = [
+            ("sheen", fibres),
+            ("iridescence", film),
+            ("dispersion", self.dispersion > 0.0 && self.transmission > 0.0),
+        ];
+        all.into_iter().filter(|(_, asked)| *asked).map(|(name, _)| name).collect()
+    }
+}
+
+/// Reflectance of a smooth metal for unpolarised light: Fresnel's equations for an index of refraction `eta` with the extinction coefficient `k`.
+pub fn conductor_reflectance(eta: f64, k: f64, cos_i: f64) -> f64 {
+    let (c2, s2) = (cos_i * cos_i, 1.0 - cos_i * cos_i);
+    let t0 = eta * eta - k * k - s2;
+    let ab = (t0 * t0 + 4.0 * eta * eta * k * k).sqrt();
+    let a = (0.5 * (ab + t0)).max(0.0).sqrt();
+    let s = (ab + c2 - 2.0 * cos_i * a) / (ab + c2 + 2.0 * cos_i * a);
+    let p = s * (c2 * ab + s2 * s2 - 2.0 * cos_i * s2 * a) / (c2 * ab + s2 * s2 + 2.0 * cos_i * s2 * a);
+    0.5 * (s + p)
+}
+
+/// The same, averaged over directions in proportion to their cosine: `2 int_0^1 F(cos) cos dcos`, by Simpson's rule.
+pub fn conductor_average(eta: f64, k: f64) -> f64 {
+    const STEPS: u32 = 64;
+    let at = |step: u32| {
+        let cos = f64::from(step) / f64::from(STEPS);
+        2.0 * cos * conductor_reflectance(eta, k, cos)
+    };
+    let odd: f64 = (1..STEPS).step_by(2).map(at).sum();
+    let even: f64 = (2..STEPS).step_by(2).map(at).sum();
+    (at(0) + 4.0 * odd + 2.0 * even + at(STEPS)) / (3.0 * f64::from(STEPS))
 }

@@ -18,6 +18,12 @@ pub struct FilmSettings {
 }
 
 impl FilmSettings {
+    /// A film of the same shape, so many pixels wide.
+    pub fn at_width(self, width: u32) -> Self {
+        let height = f64::from(width) * f64::from(self.height) / f64::from(self.width);
+        FilmSettings { width, height: height.round().max(1.0) as u32, ..self }
+    }
+
     /// The filter is the pixel's own square, so that a film point needs no table.
     pub fn is_pixel_square(&self) -> bool {
         self.filter == Filter::Box && self.filter_radius == 0.5

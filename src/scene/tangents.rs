@@ -3,9 +3,18 @@
 use super::{Material, Mesh, Scene, Triangle};
 use bevy_mikktspace::{Geometry, TangentSpace, generate_tangents};
 use glam::{DVec2, DVec3, Vec3, Vec4};
+use std::borrow::Cow;
 use std::sync::Arc;
 
 impl Scene {
+    /// The scene with the tangents that it needs: itself, if they are there already, as they are in one that was loaded.
+    pub(crate) fn with_tangents(&self) -> Cow<'_, Scene> {
+        let mut scene = self.clone();
+        scene.add_tangents();
+        let same = self.meshes.iter().zip(&scene.meshes).all(|(old, new)| Arc::ptr_eq(old, new));
+        if same { Cow::Borrowed(self) } else { Cow::Owned(scene) }
+    }
+
     /// Makes the tangents of every mesh that shows a material which needs them and has none yet, by the algorithm that programs which bake maps agree on
     /// (Mikkelsen, "Simulation of Wrinkled Surfaces Revisited", 2008); gives a warning for each mesh in which some triangles can have none, because their texture
     /// coordinates have no area: maps bend no normal there.

@@ -76,6 +76,22 @@ impl Scene {
         &self.materials[object.material.unwrap_or(triangle.material) as usize]
     }
 
+    /// For each material, whether a triangle is made of it.
+    pub fn materials_in_use(&self) -> Vec<bool> {
+        let mut used = vec![false; self.materials.len()];
+        let mut own = vec![false; self.meshes.len()];
+        for object in &self.objects {
+            match object.material {
+                Some(material) => used[material as usize] = true,
+                None => own[object.mesh as usize] = true,
+            }
+        }
+        for (mesh, _) in self.meshes.iter().zip(own).filter(|(_, own)| *own) {
+            mesh.triangles.iter().for_each(|triangle| used[triangle.material as usize] = true);
+        }
+        used
+    }
+
     /// World-space bounding box of all triangles of all instances but the ground that the loader made, the smallest: every corner counts, so that
     /// it takes longer than [`Scene::model_bounds`].
     pub fn tight_bounds(&self) -> (DVec3, DVec3) {

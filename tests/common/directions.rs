@@ -62,7 +62,11 @@ impl Cells {
 
     /// Integral of a density over each cell, by the midpoint rule.
     pub fn integrate(&self, density: impl Fn(DVec3) -> f64) -> Vec<f64> {
-        const SUB: usize = 24;
+        self.integrate_by::<24>(density)
+    }
+
+    /// The same by so many points each way.
+    pub fn integrate_by<const SUB: usize>(&self, density: impl Fn(DVec3) -> f64) -> Vec<f64> {
         let (t, b) = frame(self.axis);
         let mut cells = vec![0.0; Self::S * Self::PHI];
         for i in 0..Self::S * SUB {

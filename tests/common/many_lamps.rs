@@ -61,6 +61,26 @@ pub fn assorted(unit: f32) -> Scene {
     scene
         .luminaires
         .push(Luminaire::Point { position: unit * Vec3::new(-2.0, -1.0, -2.0), intensity: 0.5 * intensity });
+    let spot = |x: f32, direction: Vec3, outer| Luminaire::Spot {
+        position: unit * Vec3::new(x, 1.0, -1.0),
+        direction,
+        intensity: 3.0 * intensity,
+        inner: 0.5 * outer,
+        outer,
+    };
+    scene.luminaires.extend([
+        spot(-1.0, -Vec3::Y, 20.0),
+        spot(1.0, Vec3::new(0.6, 0.0, -0.8), 60.0),
+        Luminaire::Sun { direction: Vec3::new(0.6, -0.8, 0.0), irradiance: Vec3::splat(0.2), angle: 20.0 },
+        Luminaire::Photometric {
+            position: unit * Vec3::new(0.5, 1.5, 2.5),
+            direction: -Vec3::Y,
+            up: Vec3::X,
+            intensity: 0.5 * intensity,
+            profile: super::stage::profile(),
+        },
+        spot(0.0, Vec3::Z, 90.0),
+    ]);
     scene.environment = Some(Environment { radiance: Vec3::splat(0.02), image: None, rotation: 0.0 });
     scene
 }

@@ -6,6 +6,7 @@ pub mod directions;
 pub mod lamps;
 pub mod many_lamps;
 pub mod scenes;
+pub mod stage;
 pub mod statistics;
 pub mod touching;
 

@@ -1,6 +1,7 @@
 //! Small scenes, built in code.
 
 use glam::{Affine2, Affine3A, DVec2, DVec3, Vec2, Vec3};
+use luminaire::reference::physical::PhysicalSurface;
 use luminaire::reference::surfel::Surfel;
 pub use luminaire::scene::build::*;
 use luminaire::scene::*;
@@ -63,7 +64,16 @@ pub fn flat_surfel(lambert: DVec3, glossy: DVec3, exponent: f64) -> Surfel {
         thin: false,
         coat_transmittance: 1.0,
         impulse_probability: None,
+        physical: None,
     }
+}
+
+/// A surfel at the origin whose normals are +z, of a metallic-roughness surface without maps; brushed along +x.
+pub fn physical_surfel(p: &Physical, thin: bool, front: bool) -> Surfel {
+    let material = Material { physical: Some(p.clone()), thin, ..Material::default() };
+    let surface = PhysicalSurface::without_maps(&material).expect("it has one");
+    let physical = Some(PhysicalSurface { tangent: DVec3::X, ..surface });
+    Surfel { physical, front, ..flat_surfel(DVec3::ZERO, DVec3::ZERO, 0.0) }
 }
 
 /// A texture from a function of the texel's place.
@@ -94,6 +104,77 @@ pub fn glass_room(width: u32, height: u32) -> Scene {
     let slab =
         place(-1.0, 0.75, 0.0, 1.0) * Affine3A::from_rotation_z(0.5) * Affine3A::from_scale(Vec3::new(-0.1, 0.4, 0.4));
     add(&mut scene, cube(), Material { transmission: Vec3::new(0.2, 0.9, 0.4), eta: Some(1.3), ..glass }, slab);
+    scene
+}
+
+/// A copper of its own index and extinction coefficient (red, green, blue).
+pub fn copper(roughness: f32) -> Physical {
+    let conductor = Some([Vec3::new(0.2, 0.92, 1.1), Vec3::new(3.91, 2.45, 2.14)]);
+    Physical { metallic: 1.0, roughness, conductor, ..Physical::default() }
+}
+
+/// The room with metallic-roughness surfaces: rough glass that absorbs, a frosted pane, copper, a brushed wall, a varnished block, a floor whose numbers come from
+/// maps, a smooth ball of glass.
+pub fn physical_room(width: u32, height: u32) -> Scene {
+    let mut scene = cornell_like(width, height);
+    let physical = |p: Physical| Material { physical: Some(p), ..Material::default() };
+    scene.textures = vec![
+        texture(8, 8, |x, y| [0.25 + 0.1 * x as f32, 0.9 - 0.05 * y as f32, 0.5, 1.0]).into(),
+        texture(5, 3, |x, y| [x as f32 / 4.0, 0.3 + 0.2 * y as f32, 0.2 * x as f32, 1.0 - 0.15 * x as f32]).into(),
+    ];
+    for mesh in scene.meshes.iter_mut().map(Arc::make_mut) {
+        mesh.uvs = mesh.positions.iter().map(|p| Vec2::new(0.5 * p.x + 0.3 * p.z, 0.5 * p.y - 0.4 * p.z)).collect();
+    }
+    let number = |channel| Some(ChannelMap { texture: 1, channel });
+    let maps = PhysicalMaps {
+        base_color: Some(0),
+        metallic: number(0),
+        roughness: number(1),
+        specular: number(3),
+        specular_color: Some(0),
+        ..PhysicalMaps::default()
+    };
+    scene.materials[0] = physical(Physical { metallic: 1.0, roughness: 0.7, maps, ..Physical::default() });
+    let maps = PhysicalMaps { anisotropy: Some(1), ..PhysicalMaps::default() };
+    let brushed =
+        Physical { metallic: 1.0, roughness: 0.3, anisotropy: 0.8, anisotropy_rotation: 0.5, maps, ..copper(0.3) };
+    scene.materials[2] = physical(brushed);
+    let ball = scene.materials.len() - 1;
+    scene.materials[ball] = physical(Physical { base_color: Vec3::new(0.9, 0.6, 0.3), ..copper(0.25) });
+    let maps = PhysicalMaps { clearcoat: number(0), clearcoat_roughness: number(1), ..PhysicalMaps::default() };
+    let varnished = Physical {
+        base_color: Vec3::new(0.6, 0.1, 0.05),
+        clearcoat: 1.0,
+        clearcoat_roughness: 0.4,
+        maps,
+        ..Physical::default()
+    };
+    scene.materials[ball - 1] = physical(varnished);
+    let place = |x, y, z, r| Affine3A::from_translation(Vec3::new(x, y, z)) * Affine3A::from_scale(Vec3::splat(r));
+    let mut round = icosphere(3);
+    round.normals = round.positions.clone();
+    let liquid = Physical {
+        roughness: 0.3,
+        transmission: 1.0,
+        attenuation_color: Vec3::new(0.9, 0.4, 0.2),
+        attenuation_distance: 0.5,
+        ..Physical::default()
+    };
+    add(&mut scene, icosphere(2), physical(liquid.clone()), place(-0.25, -0.5, 0.25, 0.5));
+    let milky =
+        Physical { roughness: 0.0, transmission: 0.7, metallic: 0.2, base_color: Vec3::new(0.8, 0.9, 1.0), ..liquid };
+    add(&mut scene, round, physical(milky), place(0.9, 0.5, -0.75, 0.6));
+    let maps = PhysicalMaps { transmission: number(3), ..PhysicalMaps::default() };
+    let frosted = Physical {
+        roughness: 0.45,
+        transmission: 0.9,
+        base_color: Vec3::new(0.7, 0.9, 0.8),
+        maps,
+        ..Physical::default()
+    };
+    let mut pane = quad(Vec3::new(-1.25, 0.25, -0.5), Vec3::X * 1.5, Vec3::Y);
+    pane.uvs = vec![Vec2::ZERO, Vec2::X * 2.0, Vec2::new(2.0, 1.5), Vec2::Y * 1.5];
+    add(&mut scene, pane, Material { thin: true, ..physical(frosted) }, Affine3A::IDENTITY);
     scene
 }
 

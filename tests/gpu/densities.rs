@@ -8,9 +8,12 @@ use crate::common::scenes::*;
 use crate::common::statistics::*;
 use glam::{Affine3A, DVec3, Vec3};
 use luminaire::gpu::probe::{Call, Function, Probe};
+use luminaire::reference::luminaire::spot_falloff;
+use luminaire::reference::profile::photometric_intensity;
+use luminaire::reference::sun::sample_sun;
 use luminaire::reference::warp;
 use luminaire::sampling::{random4, uniform};
-use luminaire::scene::{Luminaire, LuminaireTable, SampledLuminaire};
+use luminaire::scene::{Luminaire, LuminaireTable, Profile, SampledLuminaire, SunDisc};
 use std::f64::consts::PI;
 
 const N: u32 = 200_000;
@@ -49,6 +52,7 @@ fn everything_is_drawn_by_its_density() {
         tests.push(("triangle by area".into(), triangle_by_area(&probe)));
         tests.push(("choice of a luminaire".into(), choice_of_a_luminaire(&probe, &scene)));
         tests.extend(spherical_triangles(&probe, &scene));
+        tests.extend(discs(backend));
         print!("{}: ", backend.name());
         assert_plausible(&tests);
     });
@@ -67,6 +71,113 @@ fn hemispheres(probe: &Probe) -> Vec<(String, f64)> {
             (format!("{function:?}"), chi_square(&counts))
         })
         .into()
+}
+
+/// Over a disc `1 - cos` is uniform, and so is the azimuth; every direction is its twin's, none is beyond the rim, and the density is one over the solid angle.
+/// From the least to half of all directions.
+fn discs(backend: &Intersector) -> Vec<(String, f64)> {
+    let mut scene = empty(4, 4);
+    add(&mut scene, cube(), matte(Vec3::ONE), Affine3A::IDENTITY);
+    for angle in [1e-4, 0.53, 20.0, 180.0] {
+        for direction in [Vec3::Y, Vec3::new(2.0, -1.0, 2.0) / 3.0] {
+            scene.luminaires.push(Luminaire::Sun { direction, irradiance: Vec3::ONE, angle });
+        }
+    }
+    let table = LuminaireTable::new(&scene);
+    let probe = Probe::new(&backend.device, &scene, backend.ray_query).expect("a probe");
+    let test = |(number, (index, sun)): (usize, (usize, &SunDisc))| {
+        let uv = units(20 + index as u32, f32::from_bits(index as u32));
+        let middle = sun.towards.as_dvec3();
+        // By the chord, as directions round by some units in the last place of 1.
+        let radius = (2.0 * sun.extent).sqrt();
+        let results = probe.call(Function::SampleSun, &uv).expect("the probe runs");
+        let counts = count_in_square(uv.iter().zip(results).map(|(uv, result)| {
+            let ([u, v, ..], [.., density]) = (floats(uv[0]), floats(result[0]));
+            let wi = vector(result[0]);
+            let twin = sample_sun(sun, u, v);
+            assert!((wi - twin).length() < 4e-7, "disc {number}: {wi} for {twin}");
+            assert!((density / sun.density() - 1.0).abs() < 1e-6, "disc {number}: {density} for {}", sun.density());
+            let chord = (wi - middle).length();
+            assert!(chord <= radius + 4e-7, "disc {number}: {chord} beyond {radius}");
+            // The least disc is hardly larger than roundings: by its twin.
+            let wi = if radius < 1e-4 { twin } else { wi };
+            (((wi - middle).length() / radius).powi(2).min(1.0), azimuth(middle, wi - middle))
+        }));
+        (format!("disc {number}"), chi_square(&counts))
+    };
+    table.suns().enumerate().map(test).collect()
+}
+
+/// What spots and photometric luminaires send in directions all around is what the reference has; narrow spots as far as directions of single precision tell.
+#[test]
+fn intensities_are_the_reference_s() {
+    let mut scene = empty(4, 4);
+    add(&mut scene, cube(), matte(Vec3::ONE), Affine3A::IDENTITY);
+    let axis = Vec3::new(0.48, -0.6, 0.64);
+    let (position, intensity) = (Vec3::ZERO, Vec3::ONE);
+    for (inner, outer) in [(0.0, 90.0), (20.0, 60.0), (30.0, 30.0), (1.0, 2.0), (0.01, 0.02)] {
+        scene.luminaires.push(Luminaire::Spot { position, direction: axis, intensity, inner, outer });
+    }
+    let of = |profile, up| Luminaire::Photometric { position, direction: axis, up, intensity, profile };
+    scene.luminaires.push(of(crate::common::stage::profile(), Vec3::Y));
+    let even = Profile {
+        horizontal: vec![0.0],
+        candela: vec![3.0, 1.0, 2.0],
+        vertical: vec![0.0, 30.0, 180.0],
+        name: String::new(),
+    };
+    scene.luminaires.push(of(even.into(), Vec3::X));
+    on_every_backend(|backend| {
+        let probe = Probe::new(&backend.device, &scene, backend.ray_query).expect("a probe");
+        for (index, luminaire) in (0u32..).zip(&scene.luminaires) {
+            let spread = match luminaire {
+                Luminaire::Spot { outer, .. } => 1.5 * f64::from(*outer).to_radians(),
+                _ => 4.0,
+            };
+            let directions: Vec<DVec3> = (0..4000)
+                .map(|i| {
+                    let [a, b, c, d] = random4(i, index, 4, 3).map(uniform);
+                    let aside = DVec3::new(a, b, c) - 0.5;
+                    // Some along the axis itself, and against it.
+                    let out = if i % 100 == 0 {
+                        axis.as_dvec3() * if i % 200 == 0 { 1.0 } else { -1.0 }
+                    } else {
+                        axis.as_dvec3() + spread * d * aside.normalize()
+                    };
+                    out.normalize().as_vec3().as_dvec3()
+                })
+                .collect();
+            let calls: Vec<Call> = directions
+                .iter()
+                .map(|out| {
+                    let [x, y, z] = out.as_vec3().to_array().map(f32::to_bits);
+                    [[x, y, z, index], [0; 4]]
+                })
+                .collect();
+            let (mut some, mut farthest) = (0, 0.0f64);
+            for (out, result) in directions.iter().zip(probe.call(Function::Intensity, &calls).expect("the probe runs"))
+            {
+                let found = floats(result[0])[0];
+                let expected = match luminaire {
+                    Luminaire::Spot { direction, inner, outer, .. } => spot_falloff(*direction, *inner, *outer, *out),
+                    Luminaire::Photometric { direction, up, profile, .. } => {
+                        photometric_intensity(profile, *direction, *up, *out)
+                    }
+                    _ => unreachable!("spots and profiles alone"),
+                };
+                some += u32::from(expected > 0.0);
+                // This one has other candelas on its axis for each way around, and which way that is nobody knows.
+                if index == 5 && out.cross(axis.as_dvec3()).length() < 1e-3 {
+                    assert!((0.0..=7.0).contains(&found), "{found}");
+                    continue;
+                }
+                farthest = farthest.max((found - expected).abs());
+            }
+            println!("{}, luminaire {index}: {some} lit, off by {farthest:.1e}", backend.name());
+            assert!(some > 400, "luminaire {index}: {some}");
+            assert!(farthest < 1e-4, "{}, luminaire {index}: off by {farthest:e}", backend.name());
+        }
+    });
 }
 
 /// Under the density `(m + 1) / 2 pi cos^m`, `cos^(m + 1)` is uniform.

@@ -21,6 +21,7 @@ mod intersection;
 mod light_tree;
 mod maps;
 mod overlapping_lamps;
+mod physical;
 mod pictures;
 mod scattering;
 mod scenes;

@@ -193,6 +193,10 @@ fn what_paths_find_well_is_left_to_them() {
     let mut plates = even.clone();
     plates.materials[0].glossy = Vec3::splat(0.25);
     assert!((share(&plates) - 0.25).abs() < 1e-6);
+    // What no triangle is made of does not count.
+    let mut unused = even.clone();
+    unused.materials.push(plates.materials[0].clone());
+    assert_eq!(share(&unused), 0.0);
     let all = Estimator::default();
     for other in [
         Estimator { light_sampling: LightSampling::Direct, ..all },

@@ -118,7 +118,10 @@ fn the_sun_through_a_window_pane() {
     // Most of its light falls on roof and walls outside: only from within it is seen what is missing.
     says(
         &room,
-        &["about 100 % of the light of [[luminaire]] 1 on what the camera sees comes through glass", "[environment]"],
+        &[
+            "about 100 % of the light of [[luminaire]] 1 on what the camera sees comes through glass",
+            "a sun with an `angle`",
+        ],
     );
     assert_eq!(mean(&room), 0.0);
     let mut shut = room_with_a_window(matte(Vec3::splat(0.2)));

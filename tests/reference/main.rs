@@ -4,6 +4,7 @@
 mod common;
 
 mod coats;
+mod directed;
 mod environment;
 mod estimators;
 mod exposure;
@@ -14,6 +15,7 @@ mod light_tree;
 mod lost_light;
 mod luminaire_choice;
 mod overlapping_lamps;
+mod physical;
 mod roulette;
 mod sampling;
 mod scattering;

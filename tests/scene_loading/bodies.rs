@@ -35,11 +35,19 @@ fn reversed(faces: &[Vec<usize>]) -> Vec<Vec<usize>> {
 
 const UNIT: ([f32; 3], [f32; 3]) = ([0.0; 3], [1.0; 3]);
 
-/// Warnings about glass of an OBJ with this text.
+/// Warnings about glass of an OBJ with this text; that of a metallic-roughness surface has the same. (Of one body to another within it the index may be below
+/// 1, which such a surface cannot have.)
 fn warnings(text: &str) -> Vec<String> {
     let text = format!("mtllib g.mtl\nusemtl g\n{text}");
-    let scene = Folder::new().with("mesh.obj", text).with("g.mtl", GLASS).load("mesh.obj");
-    scene.warnings.into_iter().filter(|warning| warning.contains("glass")).collect()
+    let of = |mtl: &str| {
+        let scene = Folder::new().with("mesh.obj", &text).with("g.mtl", mtl).load("mesh.obj");
+        scene.warnings.into_iter().filter(|warning| warning.contains("glass")).collect::<Vec<_>>()
+    };
+    let smooth = of(GLASS);
+    if !text.contains("between") {
+        assert_eq!(of(&GLASS.replace("illum 7", "illum 7\nPr 0.25")), smooth, "rough");
+    }
+    smooth
 }
 
 #[track_caller]

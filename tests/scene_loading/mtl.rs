@@ -81,11 +81,11 @@ fn materials_that_lack_the_same_share_a_warning() {
 
 #[test]
 fn what_is_not_modelled_is_a_warning_for_materials_in_use() {
-    let feature = "disp b.png\nmap_Ns c.png\ndisp b.png\nPr 1\nd -halo 0.5\nmap_Kd -t 1 0 0 a.png\n";
+    let feature = "disp b.png\nmap_Ns c.png\ndisp b.png\nd -halo 0.5\nmap_Kd -t 1 0 0 a.png\n";
     let scene = with_mtl(format!("newmtl m\n{feature}newmtl unused\n{feature}")).load("mesh.obj");
     let warnings: Vec<_> = scene.warnings.iter().filter(|warning| warning.contains("not modelled")).collect();
     assert_eq!(warnings.len(), 1, "{warnings:?}");
-    warned(&scene, &["`m`", "disp, map_Ns, Pr, d -halo, map_Kd -t"]);
+    warned(&scene, &["`m`", "disp, map_Ns, d -halo, map_Kd -t"]);
     assert_eq!(first_material(&scene).opacity, 0.5);
 }
 

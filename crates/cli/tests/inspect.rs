@@ -36,6 +36,29 @@ fn inspect_lists_the_fallback_where_it_is_seen() {
     assert_eq!(names(&format!("mtllib good.mtl\nusemtl lamp\n{face}")), ["lamp"]);
 }
 
+/// Both kinds of surface are in one table, and how an MTL file was read is said among what was chosen.
+#[test]
+fn inspect_lists_metallic_roughness_surfaces() {
+    let folder = Folder::new();
+    folder.write("a.ppm", "P3\n1 1\n255\n128 64 32\n");
+    let words = "newmtl m\nNs 250\nKa 1 1 1\nKd .5 .25 1\nKs .5 .5 .5\nKe 0 0 0\nNi 1.5\nd 1\nillum 3\nmap_Ns a.ppm\n";
+    folder.write(
+        "m.mtl",
+        &format!("# Blender 5.0.1 MTL File: 'None'\n{words}newmtl n\nKd 1 1 1\nPr .25\nPs 1\nTf 1 1 1\n"),
+    );
+    let faces = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\nusemtl n\nf 1/1 3/1 2/1\n";
+    folder.write("m.obj", &format!("mtllib m.mtl\n{faces}"));
+    let output = folder.luminaire(&["inspect", "m.obj"]).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stdout);
+    for part in [
+        "metallic-roughness: base colour (0.5 0.25 1), metallic 1, roughness 1, index 1.5; roughness map a.ppm, red",
+        "roughness 0.25, index 1.5; transmission 1; sheen (1 1 1) of roughness 0.5",
+        "m.mtl: written by Blender",
+    ] {
+        assert!(said.contains(part), "{part} is not in\n{said}{}", stderr(&output));
+    }
+}
+
 /// The bounds are those of what is seen, not those of a box that was turned with it.
 #[test]
 fn inspect_tells_the_bounds_of_what_is_turned() {

@@ -39,9 +39,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (mut kept, mut all, mut over) = (0, 0, vec![]);
     for path in &paths {
         let mut scene = scene::load(Path::new(path))?;
-        let film = &mut scene.film;
-        film.height = (f64::from(width) * f64::from(film.height) / f64::from(film.width)).round().max(1.0) as u32;
-        film.width = width;
+        scene.film = scene.film.at_width(width);
         let name = Path::new(path).file_stem().unwrap_or_default().to_string_lossy().into_owned();
         for stops in stops(&|scene| bench.tracer(scene, backend), &scene, &AT, seeds, TRUTH, adaptive)? {
             let mean = |of: &dyn Fn(&Stop) -> f64| stops.iter().map(of).sum::<f64>() / stops.len() as f64;

@@ -13,7 +13,7 @@ use luminaire::scene::build::{add, empty, lamp, matte, quad};
 use luminaire::scene::{Estimator, Integrator, LightChoice, LuminaireTable, SampledLuminaire};
 use luminaire_measure::chart::{Chart, Series};
 use luminaire_measure::stability::Sweep;
-use luminaire_measure::stability::sweeps::{caustics, edge_on, glossy, glossy_caustics, luminaire as lamps};
+use luminaire_measure::stability::sweeps::{caustics, edge_on, glossy, glossy_caustics, luminaire as lamps, spot};
 use std::f64::consts::TAU;
 
 fn chart<'a>(sweep: &'a Sweep, name: &str) -> &'a Chart {
@@ -92,6 +92,23 @@ fn lamps_seen_edge_on() {
     let sweep = edge_on::sweep(&bench(), &[1e-4, 1e-2, 1.0], 1 << 14).expect("the sweep runs");
     let sampled: Vec<_> = chart(&sweep, "energy").series.iter().filter(|s| s.name.starts_with("by ")).collect();
     assert_all_found(&sampled, 2e-3, 0.02);
+}
+
+/// Suns of every size give their irradiance, by light sampling and with both, without noise; and spots what their formula says, to the rounding of their axis.
+#[test]
+fn suns_and_spots_wide_and_narrow() {
+    let sweep = spot::sweep(&bench(), &[1e-4, 1e-2, 0.265, 10.0, 90.0], 1 << 14).expect("the sweep runs");
+    let energy = chart(&sweep, "energy");
+    let of = |start: &str| energy.series.iter().filter(|s| s.name.starts_with(start)).collect::<Vec<_>>();
+    assert_all_found(&[of("sun, both"), of("sun, light")].concat(), 1e-5, 0.02);
+    let noise = chart(&sweep, "noise");
+    assert!(series(noise, "sun, both (MIS)").points.iter().all(|p| p.y < 0.2), "{noise:?}");
+    for series in of("spot") {
+        for p in &series.points {
+            let rounding = if p.x < 1e-3 { 0.3 } else { 1e-5 + 4e-5 / p.x };
+            assert!((p.y - 1.0).abs() < rounding, "{} at {}: {}", series.name, p.x, p.y);
+        }
+    }
 }
 
 /// Of a point luminaire's light a mirror gives nothing, and the straight light exactly; of a lamp's it gives all.

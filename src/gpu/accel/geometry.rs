@@ -133,7 +133,7 @@ impl Geometry {
     ) -> Result<Self> {
         let corners = triangles(scene, meshes, model.features.light_tree);
         let normals = if model.features.vertex_normals { vertex_normals(scene, meshes) } else { vec![] };
-        let textured = model.features.textures || model.features.holes;
+        let textured = model.features.textures || model.features.holes || model.features.anisotropy;
         let uvs = if textured { texture_coordinates(scene, meshes) } else { vec![] };
         let colours = if model.features.vertex_colours { vertex_colours(scene, meshes) } else { vec![] };
         let tangents = if model.features.tangents { corner_tangents(scene, meshes) } else { vec![] };

@@ -31,6 +31,8 @@ pub(in crate::gpu) fn frame(scene: &Scene, table: &LuminaireTable) -> layout::Fr
 pub(in crate::gpu) fn light(frame: &mut layout::Frame, table: &LuminaireTable) {
     frame.luminaire_count = table.entries.len() as u32;
     frame.environment_probability = table.environment_probability() as f32;
+    (frame.first_sun, frame.sun_count) =
+        (table.suns().next().map_or(0, |(index, _)| index as u32), table.suns().count() as u32);
     frame.least_probability = table.least_probability as f32;
 }
 

@@ -1,18 +1,20 @@
 //! The light tree, as the kernel has it.
 
 use crate::gpu::layout::{self, LIGHT_TREE_HEADER};
-use crate::scene::LightTree;
 use crate::scene::light_tree::LightNode;
+use crate::scene::{LightTree, LuminaireTable};
 
 /// Texels of the tree: a header, what is chosen beside it, nodes, paths.
-pub(in crate::gpu) fn light_tree(tree: &LightTree) -> Vec<[u32; 4]> {
+pub(in crate::gpu) fn light_tree(tree: &LightTree, table: &LuminaireTable) -> Vec<[u32; 4]> {
     let slots = &tree.outer_choice.slots;
     let nodes_at = LIGHT_TREE_HEADER + slots.len();
     let paths_at = nodes_at + tree.nodes.len() * size_of::<layout::LightNode>() / 16;
     let mut texels = Vec::with_capacity(paths_at + tree.paths.len().div_ceil(2));
     let probability = (tree.probability as f32).to_bits();
     texels.push([slots.len() as u32, nodes_at as u32, paths_at as u32, probability]);
-    texels.push([(tree.environment_probability as f32).to_bits(), 0, 0, 0]);
+    // They stand in a row, before the environment.
+    let first_sun = tree.outer.iter().position(|outer| *outer == table.suns().next().map(|(entry, _)| entry as u32));
+    texels.push([(tree.environment_probability as f32).to_bits(), first_sun.unwrap_or(0) as u32, 0, 0]);
     for ((entry, (threshold, alias)), pdf) in tree.outer.iter().zip(slots).zip(&tree.outer_choice.pdf) {
         texels.push([*threshold, entry.unwrap_or(layout::NONE), *alias, (*pdf as f32).to_bits()]);
     }

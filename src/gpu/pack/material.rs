@@ -5,8 +5,8 @@ use crate::scene::{LuminaireTable, Material, Scene, coat_transmittance};
 use glam::Vec3;
 use std::f64::consts::PI;
 
-/// A material of a scene.
-pub(in crate::gpu) fn material(scene: &Scene, table: &LuminaireTable, index: usize) -> layout::Material {
+/// A material of a scene; `physical` is the texel of its metallic-roughness surface, 0 if it has none.
+pub(in crate::gpu) fn material(scene: &Scene, table: &LuminaireTable, index: usize, physical: u32) -> layout::Material {
     let material: &Material = &scene.materials[index];
     let m = f64::from(material.exponent);
     // N(m), by which the lobe reflects no more than its albedo.
@@ -34,7 +34,7 @@ pub(in crate::gpu) fn material(scene: &Scene, table: &LuminaireTable, index: usi
         emission_map: map(maps.emission),
         opacity_map: map(maps.opacity),
         one_sided: u32::from(material.one_sided),
-        thin: u32::from(material.is_sheet()),
+        kind: u32::from(material.is_sheet()) + 2 * physical,
         coat_transmittance: coat as f32,
         normal_map: map(material.normal_map.map(|map| map.texture)),
         normal_scale: material.normal_map.map_or(1.0, |map| map.scale),

@@ -5,5 +5,6 @@ pub(super) mod frame;
 pub(super) mod light_tree;
 pub mod luminaire;
 pub(super) mod material;
+pub(super) mod physical;
 pub(super) mod texture;
 pub(super) mod triangle;

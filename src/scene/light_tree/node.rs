@@ -2,6 +2,7 @@
 
 use super::source::Source;
 use glam::{DVec3, Vec3};
+use std::f64::consts::PI;
 
 /// The bit of a link that says that it is an index into the luminaire table, not of a node.
 pub const LEAF: u32 = 1 << 31;
@@ -17,7 +18,7 @@ pub struct LightNode {
     pub y: [f32; CHILDREN],
     /// The same.
     pub z: [f32; CHILDREN],
-    /// Its radius.
+    /// Its radius; negative, and then not 0, where all light stays within a cone ([`Child::cone`]).
     pub radius: [f32; CHILDREN],
     /// Intensity towards where most goes, over the largest of the four, negative where the light of inner sides counts less
     /// ([`Child::closed`]); 0: there is no such child.
@@ -54,6 +55,8 @@ pub struct Child {
     pub spread: Spread,
     /// Some of it are sides of closed lamps.
     pub closed: bool,
+    /// All of it are spots and the like: no light leaves the cone around the axis of which [`Spread::sine`] is the cosine, here; the axis is of unit length.
+    pub cone: bool,
 }
 
 /// What is added to the sine of a cone's angle: 16 bits of an axis round by 3e-5, and so do the tracers' cosines.
@@ -82,12 +85,13 @@ impl LightNode {
     /// Puts a child into its place.
     pub(super) fn set(&mut self, number: usize, child: &Child, link: u32) {
         let Spread { sine, two_sided } = child.spread;
-        // Rounded up.
-        let sine = ((sine * 32767.0).ceil() / 32767.0).min(1.0);
+        // Towards the wider cone.
+        let wider = if child.cone { (sine * 32767.0).floor() } else { (sine * 32767.0).ceil() };
+        let sine = (wider / 32767.0).clamp(-1.0, 1.0);
         self.x[number] = child.center.x;
         self.y[number] = child.center.y;
         self.z[number] = child.center.z;
-        self.radius[number] = child.radius;
+        self.radius[number] = if child.cone { -child.radius.max(f32::MIN_POSITIVE) } else { child.radius };
         self.strength[number] = if child.closed { -child.strength } else { child.strength };
         self.axis_xy[number] = snorm(child.axis.x) | snorm(child.axis.y) << 16;
         self.axis_z_spread[number] = snorm(child.axis.z) | snorm(if two_sided { -sine } else { sine }) << 16;
@@ -98,13 +102,15 @@ impl LightNode {
     pub fn child(&self, number: usize) -> Child {
         let [xy, z_spread] = [self.axis_xy[number], self.axis_z_spread[number]];
         let spread = from_snorm(z_spread >> 16);
+        let cone = self.radius[number] < 0.0;
         Child {
             center: Vec3::new(self.x[number], self.y[number], self.z[number]),
-            radius: self.radius[number],
+            radius: self.radius[number].abs(),
             strength: self.strength[number].abs(),
             axis: DVec3::new(from_snorm(xy), from_snorm(xy >> 16), from_snorm(z_spread)),
-            spread: Spread { sine: spread.abs(), two_sided: spread < 0.0 },
+            spread: Spread { sine: if cone { spread } else { spread.abs() }, two_sided: !cone && spread < 0.0 },
             closed: self.strength[number] < 0.0,
+            cone,
         }
     }
 }
@@ -133,8 +139,15 @@ pub(super) fn child(group: &[Source], strongest: f64) -> Child {
 
     let two_sided = group.iter().any(Source::turns);
     let axis = axis_sum(group).normalize_or_zero();
+    if axis != DVec3::ZERO
+        && let Some(widest) = cone_around(group, axis)
+    {
+        let strength = (strength(group) / strongest).max(LEAST_STRENGTH) as f32;
+        let spread = Spread { sine: widest.min(PI).cos(), two_sided: false };
+        return Child { center, radius, strength, axis, spread, closed: false, cone: true };
+    }
     let cosine = |source: &Source| {
-        let cosine = axis.dot(source.normal);
+        let cosine = if source.shines_back() { -1.0 } else { axis.dot(source.normal) };
         if source.turns() { cosine.abs() } else { cosine }
     };
     let least = group.iter().map(cosine).fold(1.0, f64::min);
@@ -143,6 +156,7 @@ pub(super) fn child(group: &[Source], strongest: f64) -> Child {
     // All around, a triangle sends a quarter of what it sends along its normal, one with two sides half.
     let share = |source: &Source| match (source.normal == DVec3::ZERO, source.turns()) {
         (true, _) => 1.0,
+        _ if source.shines_back() => 1.0,
         (_, true) => 0.5,
         (_, false) => 0.25,
     };
@@ -158,5 +172,14 @@ pub(super) fn child(group: &[Source], strongest: f64) -> Child {
         axis,
         spread: Spread { sine: if wide { 1.0 } else { sine }, two_sided: two_sided && !wide },
         closed: group.iter().any(|source| source.closed),
+        cone: false,
     }
+}
+
+/// The angle from `axis` within which all light of a group of cones stays, in radians; none if not all of them are cones.
+fn cone_around(group: &[Source], axis: DVec3) -> Option<f64> {
+    group.iter().try_fold(0.0, |widest: f64, source| {
+        let aside = axis.dot(source.normal).clamp(-1.0, 1.0).acos();
+        Some(widest.max(aside + source.cone?.to_radians()))
+    })
 }

@@ -15,7 +15,9 @@ pub struct Source {
     pub two_sided: bool,
     /// Whether it is a part of a closed lamp, of which nobody outside sees the inner sides; then the normal is outward.
     pub closed: bool,
-    /// Intensity along the normal, averaged over the channels.
+    /// Degrees from the normal within which all of its light stays; then that light is the same within, as far as the tree is concerned.
+    pub cone: Option<f64>,
+    /// Intensity along the normal, or the mean of a cone's, averaged over the channels.
     pub strength: f64,
 }
 
@@ -23,5 +25,10 @@ impl Source {
     /// Whether it is all the same which of its sides the normal is on.
     pub(super) fn turns(&self) -> bool {
         self.two_sided && !self.closed
+    }
+
+    /// Whether its cone reaches behind it, so that it has no side.
+    pub(super) fn shines_back(&self) -> bool {
+        self.cone.is_some_and(|cone| cone > 90.0)
     }
 }

@@ -137,6 +137,7 @@ pub(super) fn load(path: &Path, choices: &Choices) -> Result<BareMesh> {
     let mut bare = BareMesh { scene, loader, sky, ground, smooth, up, fill };
     let note = bare.note(emitting, choices);
     bare.scene.notes.extend([note, format!("{FIRST_VIEW}{place}")]);
+    bare.scene.notes.append(&mut bare.loader.notes);
     Ok(bare)
 }
 

@@ -83,7 +83,7 @@ fn faces(scene: &Scene) -> Option<Vec<Face>> {
         for triangle in &mesh.triangles {
             let material = scene.material_of(object, triangle);
             let emits = material.emission != glam::Vec3::ZERO;
-            if emits || material.opacity >= 0.5 && material.transmission == glam::Vec3::ZERO {
+            if emits || material.opacity >= 0.5 && !material.transmits() {
                 let corners =
                     triangle.vertices.map(|v| to_world.transform_point3(mesh.positions[v as usize].as_dvec3()));
                 faces.push(Face { corners, emits });

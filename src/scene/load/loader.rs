@@ -1,12 +1,12 @@
 //! The loader: meshes, materials and textures that a scene has loaded so far, each file once.
 
 use super::far::{self, FilePlace};
-use super::material_draft::{Draft, DraftMaps};
+use super::material_draft::Draft;
 use super::text_file::shortened;
 use super::texture::Textures;
-use super::{mtl, named_file, obj};
+use super::{ies, mtl, named_file, obj};
 use crate::Result;
-use crate::scene::{Maps, Material, Mesh, Object, Texture};
+use crate::scene::{Material, Mesh, Object, Profile, Texture};
 use glam::{DAffine3, DVec3};
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -19,6 +19,8 @@ pub(super) struct Loader {
     pub meshes: Vec<Arc<Mesh>>,
     /// What was guessed, dropped or scaled.
     pub warnings: Vec<String>,
+    /// What was chosen where there was a choice.
+    pub notes: Vec<String>,
     /// Every file that was read or that a file names and that is there.
     pub files: Vec<PathBuf>,
     /// Materials as far as they are known; number 0 is the fallback, "default".
@@ -40,6 +42,7 @@ pub(super) struct Loader {
     /// By material, the one that meshes with coloured vertices show instead.
     coloured: HashMap<u32, u32>,
     libraries: HashMap<PathBuf, HashMap<String, u32>>,
+    profiles: HashMap<PathBuf, Arc<Profile>>,
 }
 
 /// Faces of one material that lack texture coordinates.
@@ -56,6 +59,7 @@ impl Loader {
         Loader {
             meshes: Vec::new(),
             warnings: Vec::new(),
+            notes: Vec::new(),
             files: overrides.iter().flat_map(Draft::map_files).collect(),
             drafts: vec![Draft::named("default")],
             overrides,
@@ -67,6 +71,7 @@ impl Loader {
             mesh_files: HashMap::new(),
             coloured: HashMap::new(),
             libraries: HashMap::new(),
+            profiles: HashMap::new(),
         }
     }
 
@@ -122,6 +127,21 @@ impl Loader {
         self.without_uv.push(without_uv.collect());
         self.mesh_files.insert(identity, index);
         Ok(index)
+    }
+
+    /// The profile of a photometric file; the same file is read once.
+    ///
+    /// # Errors
+    /// If it cannot be read or is wrong.
+    pub(super) fn profile(&mut self, path: &Path) -> Result<Arc<Profile>> {
+        let identity = identity(path);
+        if let Some(profile) = self.profiles.get(&identity) {
+            return Ok(profile.clone());
+        }
+        let profile = Arc::new(ies::read(path, &mut self.warnings)?);
+        self.files.push(path.to_owned());
+        self.profiles.insert(identity, profile.clone());
+        Ok(profile)
     }
 
     /// The material that an object of `mesh` means by `name`: one of its own MTL files, else of any, else of the scene file.
@@ -185,8 +205,7 @@ impl Loader {
             if shown {
                 materials.push(draft.finish(&mut textures, &mut self.warnings));
             } else {
-                let without_maps = Draft { maps: DraftMaps::default(), ..draft.clone() };
-                materials.push(without_maps.finish(&mut textures, &mut Vec::new()));
+                materials.push(draft.without_maps().finish(&mut textures, &mut Vec::new()));
             }
         }
         self.warn_of_missing_uvs(objects, &materials);
@@ -237,7 +256,7 @@ impl Loader {
         for object in objects.iter().filter(|object| seen.insert((object.mesh, object.material))) {
             for WithoutUv { material, at } in &self.without_uv[object.mesh as usize] {
                 let material = &materials[object.material.unwrap_or(*material) as usize];
-                if (material.maps != Maps::default() || material.bends_normal()) && said.insert((&material.name, at)) {
+                if material.has_maps() && said.insert((&material.name, at)) {
                     self.warnings.push(format!(
                         "{at}: faces without texture coordinates, but material `{}` has maps; (0, 0) is used",
                         material.name
@@ -294,7 +313,9 @@ impl Loader {
             self.files.extend(mtl::named_files(path));
         }
         let mut materials = HashMap::new();
-        for draft in mtl::read(path, &mut self.warnings)? {
+        let mtl::Library { drafts, note } = mtl::read(path, &mut self.warnings)?;
+        self.notes.extend(note);
+        for draft in drafts {
             materials.insert(draft.name.clone(), self.drafts.len() as u32);
             self.drafts.push(draft);
         }

@@ -1,5 +1,7 @@
 //! A material while it is still being read: what nobody has said yet is `None`.
 
+pub(super) use super::map_draft::MapDraft;
+use super::physical_draft::{PhysicalDraft, PhysicalDraftMaps, bounded};
 use super::texture::{Channel, MapFile, Relief, Textures};
 use crate::scene::{BumpMap, Maps, Material, NormalMap};
 use glam::Vec3;
@@ -61,6 +63,12 @@ pub(super) struct Draft {
     pub coloured: bool,
     /// What had to be guessed: warnings, if the material is in use.
     pub notes: Vec<String>,
+    /// What else it is as a metallic-roughness surface, whose base colour is `diffuse`; none: it is what the lecture describes.
+    pub physical: Option<Box<PhysicalDraft>>,
+    /// Of a scene file: the first key that only what the lecture describes has, and where it stands.
+    pub blinn_phong: Option<(&'static str, String)>,
+    /// The same words of an MTL file as a surface of the other kind.
+    pub otherwise: Option<Box<Draft>>,
 }
 
 /// The maps of a [`Draft`].
@@ -82,31 +90,6 @@ pub(super) struct DraftMaps {
     pub bump: MapDraft,
 }
 
-/// What is said about a map.
-#[derive(Debug, Clone, Default)]
-pub(super) enum MapDraft {
-    /// Nothing.
-    #[default]
-    Unstated,
-    /// That there shall be none.
-    Removed,
-    /// Where it is.
-    File(MapFile),
-}
-
-impl MapDraft {
-    fn overlay(&mut self, other: &MapDraft) {
-        if !matches!(other, MapDraft::Unstated) {
-            *self = other.clone();
-        }
-    }
-
-    /// The file, if there is one.
-    pub(super) fn file(&self) -> Option<&MapFile> {
-        if let MapDraft::File(map) = self { Some(map) } else { None }
-    }
-}
-
 impl Draft {
     /// A material of which nothing but the name is known.
     pub(super) fn named(name: &str) -> Self {
@@ -116,12 +99,44 @@ impl Draft {
     /// The files of its maps that are there.
     pub(super) fn map_files(&self) -> Vec<PathBuf> {
         let DraftMaps { ambient, diffuse, glossy, emission, opacity, normal, bump } = &self.maps;
-        let maps = [ambient, diffuse, glossy, emission, opacity, normal, bump].into_iter().filter_map(MapDraft::file);
-        maps.filter_map(MapFile::path).collect()
+        let physical = self.physical.iter().flat_map(|physical| physical.maps.all());
+        let maps = [ambient, diffuse, glossy, emission, opacity, normal, bump].into_iter().chain(physical);
+        maps.filter_map(MapDraft::file).filter_map(MapFile::path).collect()
     }
 
-    /// Replaces what `other` states.
+    /// The same material without any map.
+    pub(super) fn without_maps(&self) -> Self {
+        let mut bare = Draft { maps: DraftMaps::default(), ..self.clone() };
+        if let Some(physical) = &mut bare.physical {
+            physical.maps = PhysicalDraftMaps::default();
+        }
+        bare
+    }
+
+    /// Replaces what `other` states. What only one kind of surface has makes it one of that kind.
     pub(super) fn overlay(&mut self, other: &Draft) {
+        match (&other.physical, &other.blinn_phong) {
+            (Some(_), _) if self.physical.is_none() => match self.otherwise.take() {
+                Some(otherwise) => *self = Draft { coloured: self.coloured, ..*otherwise },
+                None => self.physical = Some(Box::default()),
+            },
+            (_, Some((key, at))) if self.physical.take().is_some() => {
+                if let Some(otherwise) = self.otherwise.take() {
+                    *self = Draft { coloured: self.coloured, ..*otherwise };
+                }
+                if *key != "model" {
+                    self.notes.push(format!(
+                        "{at}: `{key}` is a word of Blinn-Phong, so that of material `{}` the words of the MTL file are taken by the letter, too; as \
+                         a metallic-roughness surface, which the file means, it has `base_colour`, `roughness` and others",
+                        self.name
+                    ));
+                }
+            }
+            _ => {}
+        }
+        if let (Some(physical), Some(other)) = (&mut self.physical, &other.physical) {
+            physical.overlay(other);
+        }
         self.ambient = other.ambient.or(self.ambient);
         self.diffuse = other.diffuse.or(self.diffuse);
         self.glossy = other.glossy.or(self.glossy);
@@ -156,6 +171,9 @@ impl Draft {
     pub(super) fn finish(&self, textures: &mut Textures, warnings: &mut Vec<String>) -> Material {
         let name = &self.name;
         warnings.extend(self.notes.iter().cloned());
+        if let Some(physical) = &self.physical {
+            return self.finish_physical(physical, textures, warnings);
+        }
         let one_if = |map: &MapDraft| if map.file().is_some() { Vec3::ONE } else { Vec3::ZERO };
         let glossy = self.glossy.unwrap_or(one_if(&self.maps.glossy));
         let emission = self.emission.unwrap_or(one_if(&self.maps.emission));
@@ -177,8 +195,6 @@ impl Draft {
             ("thin", self.thin == Some(true) && transmission == Vec3::ZERO, "`transmission`"),
             ("impulse_probability", self.impulse_probability.is_some() && !impulses, "`reflection` or `transmission`"),
             ("one_sided", self.one_sided.is_some() && emission == Vec3::ZERO, "`emission`"),
-            ("normal_scale", self.normal_scale.is_some() && self.maps.normal.file().is_none(), "`normal_map`"),
-            ("bump_scale", self.bump_scale.is_some() && self.maps.bump.file().is_none(), "`bump_map`"),
         ];
         for (key, idle, other) in without {
             if idle {
@@ -230,6 +246,14 @@ impl Draft {
     /// What bends normals. A scale of 0 is no map.
     fn load_relief(&self, material: &mut Material, textures: &mut Textures, warnings: &mut Vec<String>) {
         let name = &self.name;
+        for (key, stated, map) in [
+            ("normal", self.normal_scale.is_some(), &self.maps.normal),
+            ("bump", self.bump_scale.is_some(), &self.maps.bump),
+        ] {
+            if stated && map.file().is_none() {
+                warnings.push(format!("material `{name}`: `{key}_scale` does nothing without `{key}_map`"));
+            }
+        }
         let scale = self.normal_scale.unwrap_or(1.0);
         if let Some(map) = self.maps.normal.file().filter(|_| scale != 0.0) {
             material.normal_map = textures.normals(map, warnings).map(|texture| NormalMap { texture, scale });
@@ -247,10 +271,14 @@ impl Draft {
                 }
                 material.bump_map = Some(BumpMap { texture, scale });
             }
-            Some(Relief::Normals(_)) if material.normal_map.is_some() => warnings.push(format!(
-                "{}: material `{name}`: map_Bump holds normals too, of which `norm` counts",
-                map.at
-            )),
+            Some(Relief::Normals(_)) if material.normal_map.is_some() => {
+                if !self.maps.normal.file().is_some_and(|normals| normals.is_same_file(map)) {
+                    warnings.push(format!(
+                        "{}: material `{name}`: map_Bump holds normals too, of which `norm` counts",
+                        map.at
+                    ));
+                }
+            }
             Some(Relief::Normals(texture)) => {
                 warnings.push(format!(
                     "{}: material `{name}`: the image of map_Bump looks like a map of normals and is taken as one, -bm as its strength; `norm` in place \
@@ -260,6 +288,50 @@ impl Draft {
                 material.normal_map = Some(NormalMap { texture, scale });
             }
         }
+    }
+
+    /// The same of a metallic-roughness surface: a missing base colour is 0.8, but 1 with a map or under the colours of vertices. Only what no texel of its map
+    /// may exceed is scaled.
+    fn finish_physical(
+        &self,
+        physical: &PhysicalDraft,
+        textures: &mut Textures,
+        warnings: &mut Vec<String>,
+    ) -> Material {
+        let name = &self.name;
+        let base = self.diffuse.unwrap_or(match self.maps.diffuse.file() {
+            Some(_) => Vec3::ONE,
+            None if self.coloured => Vec3::ONE,
+            None => DEFAULT_LAMBERT,
+        });
+        let thin = self.thin.unwrap_or(false);
+        let mut surface = physical.finish(name, thin, textures, warnings);
+        let one_if = |map: &MapDraft| if map.file().is_some() { Vec3::ONE } else { Vec3::ZERO };
+        let mut material = Material {
+            name: name.clone(),
+            ambient: self.ambient.unwrap_or(if self.maps.ambient.file().is_some() { Vec3::ONE } else { base }),
+            lambert: base,
+            emission: self.emission.unwrap_or(one_if(&self.maps.emission)),
+            one_sided: self.one_sided.unwrap_or(false),
+            transmission: Vec3::splat(surface.transmission),
+            thin,
+            opacity: self.opacity.unwrap_or(1.0),
+            ..Material::default()
+        };
+        if self.one_sided.is_some() && material.emission == Vec3::ZERO {
+            warnings.push(format!("material `{name}`: `one_sided` does nothing without `emission`"));
+        }
+        self.load_maps(&mut material, textures, warnings);
+        self.load_relief(&mut material, textures, warnings);
+        if material.opacity == 0.0 {
+            warnings.push(format!("material `{name}` has opacity 0 (d): its surfaces cannot be seen"));
+        }
+        surface.maps.base_color = material.maps.lambert.take();
+        surface.base_color = bounded(base, surface.maps.base_color, "base colour", name, textures, warnings);
+        if self.ambient.is_none() && self.maps.ambient.file().is_none() {
+            material.ambient = surface.base_color;
+        }
+        Material { lambert: Vec3::ZERO, transmission: Vec3::ZERO, physical: Some(surface), ..material }
     }
 
     /// Maps of numbers that are zero are not even looked for.

@@ -61,6 +61,17 @@ pub(super) fn of_heights(image: &ImageFile, height: impl Fn(usize) -> f32 + Send
     Faults::sum(image, faults).in_words(image)
 }
 
+/// The same for numbers from 0 to 1, one a channel; of alpha nobody knows whether it is one.
+pub(super) fn of_numbers(image: &ImageFile, numbers: impl Fn(usize) -> [f32; 4] + Send + Sync) -> Vec<String> {
+    if !image.is_float() {
+        return Vec::new();
+    }
+    let faulty = |texel| numbers(texel)[..3].iter().any(|number| !is_opacity(*number));
+    let count = (0..image.len()).into_par_iter().with_min_len(CHUNK).filter(|texel| faulty(*texel)).count();
+    let said = format!("{count} of its {} texels are outside of 0 to 1; they are clamped", image.len());
+    if count > 0 { vec![said] } else { Vec::new() }
+}
+
 /// A little beyond 1 is what filters leave.
 fn is_opacity(value: f32) -> bool {
     (-0.01..=1.01).contains(&value)

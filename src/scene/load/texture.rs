@@ -2,7 +2,7 @@
 
 use super::{named_file, texel_faults};
 use crate::picture::decode::{CHUNK, ImageFile};
-use crate::scene::Texture;
+use crate::scene::{ChannelMap, Texture};
 use glam::{Affine2, DVec3, Vec2, Vec3};
 use half::f16;
 use rayon::prelude::*;
@@ -35,6 +35,8 @@ pub(super) struct MapFile {
     pub channel: Channel,
     /// The image's alpha is the opacity: colours that are multiplied by it already are divided by it.
     pub straight: bool,
+    /// Its colours are numbers as they are stored, whatever curve the picture has.
+    pub stored: bool,
     /// `-s`: how often the picture is there between the coordinates 0 and 1, each way.
     pub scale: Vec2,
     /// `-o`: the place in the picture, as a share of its size, that the coordinates (0, 0) show.
@@ -63,17 +65,23 @@ struct Key {
     clamp: bool,
     base: u32,
     gain: u32,
-    content: Content,
+    kind: Kind,
     straight: bool,
 }
 
-/// What the numbers of an image stand for.
+/// What the texels of a texture are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-enum Content {
+enum Kind {
     /// Colours, with the image's own alpha.
     Colours,
-    /// An opacity, which becomes the alpha.
+    /// The same without their curve.
+    Stored,
+    /// An opacity in alpha.
     Opacity(Channel),
+    /// Numbers from 0 to 1, as they are stored: a number a channel.
+    Shares,
+    /// A number from 0 to 1 in red: the luminance of what is stored.
+    Luminance,
     /// Normals in tangent space: numbers as they are stored.
     Normals,
     /// Heights; unless the image evidently holds normals, if that may be.
@@ -121,6 +129,7 @@ impl MapFile {
             scale: Vec2::ONE,
             offset: Vec2::ZERO,
             straight: false,
+            stored: false,
         }
     }
 
@@ -134,6 +143,10 @@ impl MapFile {
     /// The file, if there is one.
     pub(super) fn path(&self) -> Option<PathBuf> {
         Some(self.find().ok()?.0)
+    }
+
+    fn colours(&self) -> Kind {
+        if self.stored { Kind::Stored } else { Kind::Colours }
     }
 
     /// First the scale, then the offset: so Blender and three.js read and write `-s` and `-o`.
@@ -163,7 +176,7 @@ impl Textures {
     /// The texture of a map that multiplies a colour; its alpha is the image's own. If the file cannot be used, which is a
     /// warning, a checkerboard that nobody overlooks.
     pub(super) fn visible(&mut self, map: &MapFile, warnings: &mut Vec<String>) -> u32 {
-        let texture = self.load(map, Content::Colours, "a checkerboard of magenta and black shows instead", warnings);
+        let texture = self.load(map, map.colours(), "a checkerboard of magenta and black shows instead", warnings);
         match texture {
             Some(texture) => self.placed(texture, map),
             None => self.fallback(),
@@ -172,18 +185,34 @@ impl Textures {
 
     /// The same, but none if the file cannot be used.
     pub(super) fn optional(&mut self, map: &MapFile, warnings: &mut Vec<String>) -> Option<u32> {
-        self.load(map, Content::Colours, NO_MAP, warnings).map(|texture| self.placed(texture, map))
+        self.load(map, map.colours(), NO_MAP, warnings).map(|texture| self.placed(texture, map))
+    }
+
+    /// The texture of a map that multiplies a number, and its channel: the one that is asked for, or luminance, as Blender makes a number of a colour. None if
+    /// the file cannot be used, which is a warning.
+    pub(super) fn number(&mut self, map: &MapFile, warnings: &mut Vec<String>) -> Option<ChannelMap> {
+        let (kind, channel) = match map.channel {
+            Channel::One(channel) => (Kind::Shares, channel),
+            Channel::Any | Channel::Luminance => (Kind::Luminance, 0),
+        };
+        let texture = self.load(map, kind, NO_MAP, warnings)?;
+        Some(ChannelMap { texture: self.placed(texture, map), channel })
+    }
+
+    /// The texture of a map whose channels are three numbers. None if the file cannot be used, which is a warning.
+    pub(super) fn numbers(&mut self, map: &MapFile, warnings: &mut Vec<String>) -> Option<u32> {
+        self.load(map, Kind::Shares, NO_MAP, warnings).map(|texture| self.placed(texture, map))
     }
 
     /// The texture of a map of normals. None if the file cannot be used, which is a warning.
     pub(super) fn normals(&mut self, map: &MapFile, warnings: &mut Vec<String>) -> Option<u32> {
-        self.load(map, Content::Normals, NO_MAP, warnings).map(|texture| self.placed(texture, map))
+        self.load(map, Kind::Normals, NO_MAP, warnings).map(|texture| self.placed(texture, map))
     }
 
     /// The texture of a map of heights, or of normals if the image evidently holds such and `or_normals` lets it. None if the file cannot be used, which is a warning.
     pub(super) fn relief(&mut self, map: &MapFile, or_normals: bool, warnings: &mut Vec<String>) -> Option<Relief> {
-        let content = Content::Heights { channel: map.channel, or_normals };
-        let texture = self.load(map, content, NO_MAP, warnings).map(|texture| self.placed(texture, map))?;
+        let kind = Kind::Heights { channel: map.channel, or_normals };
+        let texture = self.load(map, kind, NO_MAP, warnings).map(|texture| self.placed(texture, map))?;
         let normals = or_normals && self.normals[texture as usize];
         Some(if normals { Relief::Normals(texture) } else { Relief::Heights(texture) })
     }
@@ -195,7 +224,7 @@ impl Textures {
 
     /// The texture of a map whose alpha is an opacity. None if the file cannot be used, which is a warning.
     pub(super) fn opacity(&mut self, map: &MapFile, warnings: &mut Vec<String>) -> Option<u32> {
-        self.load(map, Content::Opacity(map.channel), NO_MAP, warnings).map(|texture| self.placed(texture, map))
+        self.load(map, Kind::Opacity(map.channel), NO_MAP, warnings).map(|texture| self.placed(texture, map))
     }
 
     /// A loaded texture where the map wants it: another one with the same texels, unless it is there already.
@@ -236,13 +265,7 @@ impl Textures {
     }
 
     /// `instead` says what happens if the file cannot be used.
-    fn load(
-        &mut self,
-        map: &MapFile,
-        content: Content,
-        instead: &str,
-        warnings: &mut Vec<String>,
-    ) -> Option<u32> {
+    fn load(&mut self, map: &MapFile, kind: Kind, instead: &str, warnings: &mut Vec<String>) -> Option<u32> {
         let (path, guess) = match map.find() {
             Ok(found) => found,
             Err(reason) => {
@@ -261,7 +284,7 @@ impl Textures {
             clamp: map.clamp,
             base: map.base.to_bits(),
             gain: map.gain.to_bits(),
-            content,
+            kind,
             straight: map.straight,
         };
         if let Some(texture) = self.by_key.get(&key) {
@@ -275,12 +298,9 @@ impl Textures {
         let texture = match ImageFile::open(&path, MOST_TEXELS - self.texels, too_many) {
             Ok(image) => {
                 self.texels += image.len() as u64;
-                let normals = match content {
-                    Content::Normals | Content::Heights { .. } => holds_normals(&image),
-                    Content::Colours | Content::Opacity(_) => false,
-                };
-                let found = match content {
-                    Content::Heights { or_normals: true, .. } if normals => Content::Normals,
+                let normals = matches!(kind, Kind::Normals | Kind::Heights { .. }) && holds_normals(&image);
+                let found = match kind {
+                    Kind::Heights { or_normals: true, .. } if normals => Kind::Normals,
                     found => found,
                 };
                 let (texels, faults) = texels(&image, map, found);
@@ -294,8 +314,8 @@ impl Textures {
                     // Then there is nothing to divide, and both are one.
                     self.by_key.insert(Key { straight: !key.straight, ..key.clone() }, Some(self.loaded.len() as u32));
                 }
-                if found != content {
-                    self.by_key.insert(Key { content: found, ..key.clone() }, Some(self.loaded.len() as u32));
+                if found != kind {
+                    self.by_key.insert(Key { kind: found, ..key.clone() }, Some(self.loaded.len() as u32));
                 }
                 let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
                 let (width, height) = (image.width, image.height);
@@ -322,35 +342,52 @@ impl Textures {
 }
 
 /// The texels as the tracers see them: options applied, finite, not negative, within half precision; and what was changed for that, in words.
-fn texels(image: &ImageFile, map: &MapFile, content: Content) -> (Vec<[f16; 4]>, Vec<String>) {
+fn texels(image: &ImageFile, map: &MapFile, kind: Kind) -> (Vec<[f16; 4]>, Vec<String>) {
+    let kind = match kind {
+        Kind::Opacity(Channel::Any) if image.has_transparency() => Kind::Opacity(Channel::One(3)),
+        other => other,
+    };
     let range = |value: f32| map.base + map.gain * value;
-    match content {
-        Content::Colours => (
+    let all = |texel: &(dyn Fn(usize) -> [f16; 4] + Sync)| -> Vec<[f16; 4]> {
+        (0..image.len()).into_par_iter().with_min_len(CHUNK).map(texel).collect()
+    };
+    match kind {
+        Kind::Colours => (
             image.decode(map.straight, |value| half(range(value)), opacity),
             texel_faults::of_colours(image, map.straight, range),
         ),
-        Content::Normals => {
-            let texel = |texel| {
+        Kind::Stored => {
+            let colour = |texel| {
+                let [r, g, b, a] = image.stored(texel);
+                [half(range(r)), half(range(g)), half(range(b)), opacity(a)]
+            };
+            (all(&colour), texel_faults::of_colours(image, false, range))
+        }
+        Kind::Opacity(channel) => {
+            let value = |texel| range(scalar_of(image.stored(texel), channel));
+            let scalar = |texel| [f16::ONE, f16::ONE, f16::ONE, opacity(value(texel))];
+            (all(&scalar), texel_faults::of_opacities(image, value))
+        }
+        Kind::Shares => {
+            let numbers = |texel| image.stored(texel).map(range);
+            (all(&|texel| numbers(texel).map(opacity)), texel_faults::of_numbers(image, numbers))
+        }
+        Kind::Luminance => {
+            let number = |texel| range(luminance(image.stored(texel)));
+            let grey = |texel| {
+                let grey = opacity(number(texel));
+                [grey, grey, grey, f16::ONE]
+            };
+            (all(&grey), texel_faults::of_numbers(image, |texel| [number(texel); 4]))
+        }
+        Kind::Normals => {
+            let normal = |texel| {
                 let [r, g, b, _] = image.stored(texel).map(|value| half(range(value)));
                 [r, g, b, f16::ONE]
             };
-            let texels = (0..image.len()).into_par_iter().with_min_len(CHUNK).map(texel).collect();
-            (texels, texel_faults::of_colours(image, false, range))
+            (all(&normal), texel_faults::of_numbers(image, |texel| image.stored(texel).map(range)))
         }
-        Content::Heights { channel, .. } => {
-            let value = |texel| range(scalar_of(image.stored(texel), channel));
-            heights(image, value)
-        }
-        Content::Opacity(channel) => {
-            let channel = match channel {
-                Channel::Any if image.has_transparency() => Channel::One(3),
-                other => other,
-            };
-            let value = |texel| range(scalar_of(image.stored(texel), channel));
-            let scalar = |texel| [f16::ONE, f16::ONE, f16::ONE, opacity(value(texel))];
-            let texels = (0..image.len()).into_par_iter().with_min_len(CHUNK).map(scalar).collect();
-            (texels, texel_faults::of_opacities(image, value))
-        }
+        Kind::Heights { channel, .. } => heights(image, |texel| range(scalar_of(image.stored(texel), channel))),
     }
 }
 

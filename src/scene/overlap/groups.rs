@@ -4,7 +4,7 @@ use super::edits::Edits;
 use super::face::{Face, Relation};
 use super::lamps::Merger;
 use super::union::{MOST_UNITED, Part, union};
-use crate::scene::{Maps, Mesh};
+use crate::scene::Mesh;
 use glam::{DVec3, Vec3};
 use std::collections::BTreeMap;
 
@@ -18,13 +18,16 @@ impl Merger<'_> {
     fn is_plain(&self, of: &Face) -> bool {
         let mesh: &Mesh = &self.scene.meshes[self.scene.objects[of.object as usize].mesh as usize];
         let material = &self.scene.materials[of.material as usize];
-        let dark = material.lambert == Vec3::ZERO && material.glossy == Vec3::ZERO && !material.has_impulse();
-        let flat = mesh.normals.is_empty() || dark || {
+        let flat = mesh.normals.is_empty() || material.is_black() || {
             let normals = mesh.triangles[of.triangle as usize].vertices.map(|v| mesh.normals[v as usize]);
             normals.iter().all(|n| n.distance(normals[0]) < 1e-3)
         };
-        let uncoloured = mesh.colours.is_empty() || (material.lambert == Vec3::ZERO && material.ambient == Vec3::ZERO);
-        material.maps == Maps::default() && flat && uncoloured
+        let physical = material.physical.as_ref();
+        let uncoloured = mesh.colours.is_empty()
+            || (material.lambert == Vec3::ZERO && material.ambient == Vec3::ZERO && physical.is_none());
+        // A brushed one lies along its texture coordinates.
+        let mapped = material.has_maps() || physical.is_some_and(|p| p.anisotropy > 0.0);
+        !mapped && flat && uncoloured
     }
 
     /// Of faces of one light that overlap, leaves those that cover the whole by themselves, or puts in their place what they cover together, without what

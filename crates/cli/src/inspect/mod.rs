@@ -1,6 +1,7 @@
 //! `luminaire inspect`.
 
 mod integrator;
+mod physical;
 mod tables;
 
 use self::tables::{luminaires, materials, meshes, objects, point, rgb, textures};
@@ -251,8 +252,8 @@ mod tests {
     use super::*;
     use luminaire::glam::Vec3;
     use luminaire::scene::{
-        Camera, Estimator, Filter, Integrator, Lens, Luminaire, Maps, Material, Object, RenderSettings, Texture,
-        Triangle,
+        Camera, Estimator, Filter, Integrator, Lens, Luminaire, Maps, Material, Object, Profile, RenderSettings,
+        Texture, Triangle,
     };
 
     #[test]
@@ -304,7 +305,30 @@ mod tests {
                 }
                 .into(),
             ],
-            luminaires: vec![Luminaire::Point { position: Vec3::Z, intensity: Vec3::ONE }],
+            luminaires: vec![
+                Luminaire::Point { position: Vec3::Z, intensity: Vec3::ONE },
+                Luminaire::Spot {
+                    position: Vec3::Z,
+                    direction: Vec3::X,
+                    intensity: Vec3::ONE,
+                    inner: 10.0,
+                    outer: 25.5,
+                },
+                Luminaire::Photometric {
+                    position: Vec3::Z,
+                    direction: Vec3::NEG_Y,
+                    up: Vec3::X,
+                    intensity: Vec3::splat(0.5),
+                    profile: Profile {
+                        name: "lamp.ies".into(),
+                        vertical: vec![0.0, 180.0],
+                        horizontal: vec![0.0],
+                        candela: vec![100.0; 2],
+                    }
+                    .into(),
+                },
+                Luminaire::Sun { direction: Vec3::NEG_Y, irradiance: Vec3::splat(2.0), angle: 0.5 },
+            ],
             environment: Some(Environment { radiance: Vec3::splat(0.5), image: None, rotation: 0.0 }),
             sensor: Sensor {
                 position: Vec3::Z,
@@ -350,7 +374,12 @@ mod tests {
             "... and 2 more",
             "(1 2 3)",
             "point",
-            "22 emissive triangles  total area 22.0000",
+            "22 emissive triangles",
+            "total area 22.0000",
+            "at (0 0 1) towards (1 0 0), 10 to 25.5 degrees",
+            "(0.5 0.5 0.5) times lamp.ies: 1257 lm, at most 100 cd",
+            "towards (0 -1 0), 0.5000 degrees",
+            "irradiance (2 2 2)",
             "  bare model: something chosen",
             "  one.obj:3: something odd",
         ] {

@@ -1,5 +1,6 @@
 //! The tables of `luminaire inspect`.
 
+use super::physical;
 use luminaire::glam::{Affine2, DVec3, Vec2, Vec3};
 use luminaire::scene::{Environment, LightTree, Luminaire, LuminaireTable, Material, Mesh, SampledLuminaire, Scene};
 
@@ -65,7 +66,9 @@ pub(super) fn materials(scene: &Scene) -> Vec<Vec<String>> {
     let rows = scene.materials.iter().zip(used).enumerate().skip(hidden).map(|(index, (m, used))| {
         let name = if index == 0 && built_in.is_some() && twice { "default (built in)".into() } else { m.name.clone() };
         let exponent = if m.glossy == Vec3::ZERO { "-".into() } else { m.exponent.to_string() };
-        let (lambert, glossy, emission) = (rgb(m.lambert), rgb(m.glossy), rgb(m.emission));
+        // A dash where it has no such albedo at all.
+        let albedo = |albedo: Vec3| if m.physical.is_some() { "-".into() } else { rgb(albedo) };
+        let (lambert, glossy, emission) = (albedo(m.lambert), albedo(m.glossy), rgb(m.emission));
         vec![name, used.to_string(), lambert, glossy, exponent, emission, besides(scene, m)]
     });
     std::iter::once(head).chain(rows).collect()
@@ -73,7 +76,8 @@ pub(super) fn materials(scene: &Scene) -> Vec<Vec<String>> {
 
 /// Impulses, opacity and maps; a dash where there are none.
 fn besides(scene: &Scene, m: &Material) -> String {
-    let mut parts = Vec::new();
+    let mut parts: Vec<String> =
+        m.physical.iter().flat_map(|surface| physical::words(scene, surface, m.thin)).collect();
     match m.eta {
         Some(eta) if m.transmission != Vec3::ZERO => parts.push(format!(
             "{}glass of index {eta}, reflection {}, transmission {}",
@@ -162,7 +166,32 @@ pub(super) fn luminaires(scene: &Scene) -> Vec<Vec<String>> {
                 format!("intensity {}", rgb(*intensity)),
                 chosen,
             ]),
-            SampledLuminaire::Impulse(Luminaire::Infinite { direction, irradiance }) => rows.push(vec![
+            SampledLuminaire::Impulse(Luminaire::Spot { position, direction, intensity, inner, outer }) => {
+                rows.push(vec![
+                    "spot".into(),
+                    format!("at {} towards {}, {inner} to {outer} degrees", point(scene, *position), rgb(*direction)),
+                    format!("intensity {}", rgb(*intensity)),
+                    chosen,
+                ]);
+            }
+            SampledLuminaire::Impulse(Luminaire::Photometric { position, direction, intensity, profile, .. }) => {
+                let (flux, most) = (profile.flux(), profile.largest());
+                rows.push(vec![
+                    "photometric".into(),
+                    format!("at {} towards {}", point(scene, *position), rgb(*direction)),
+                    format!("{} times {}: {flux:.0} lm, at most {most:.0} cd", rgb(*intensity), profile.name),
+                    chosen,
+                ]);
+            }
+            SampledLuminaire::Sun(sun) => rows.push(vec![
+                "sun disc".into(),
+                format!("towards {}, {:.4} degrees", rgb(-sun.towards), sun.angle()),
+                format!("irradiance {}", rgb(sun.irradiance().as_vec3())),
+                chosen,
+            ]),
+            SampledLuminaire::Impulse(
+                Luminaire::Infinite { direction, irradiance } | Luminaire::Sun { direction, irradiance, .. },
+            ) => rows.push(vec![
                 "infinite".into(),
                 format!("towards {}", rgb(*direction)),
                 format!("irradiance {}", rgb(*irradiance)),

@@ -135,9 +135,9 @@ pub fn begin(options: &Options, scene: &Scene, notes: Notes) -> Result<Rendered>
         ));
     }
     notes.note(&format!(
-        "{}: going on from {:.4} samples a pixel, after {:.1} s",
+        "{}: going on from {} samples a pixel, after {:.1} s",
         path.display(),
-        rendered.progress.spp(),
+        (10.0 * rendered.progress.spp()).round() / 10.0,
         rendered.progress.seconds
     ));
     Ok(rendered)

@@ -182,10 +182,12 @@ fn trace(
     let mut tracer = Cropped::new(&mut tracer, crop.as_ref());
     let mut rendered = resume(&mut tracer, begun, limits, &mut watch, &interrupts::STOP);
     reporter.finish();
-    if let (Some(wanted), least) = (limits.spp, rendered.film.first_sample + rendered.film.least_samples())
-        && least > wanted
+    let (first, held) = (f64::from(rendered.film.first_sample), rendered.progress.spp());
+    if let Some(wanted) = limits.spp.map(f64::from)
+        && first + f64::from(rendered.film.least_samples()) > wanted
     {
-        notes.note(&format!("the checkpoint already held more samples than were asked for: {least} a pixel"));
+        let held = summary::samples_of(&rendered.film, first + held);
+        notes.note(&format!("the checkpoint already held more samples than were asked for: {held} a pixel"));
     }
     // The checkpoint comes first: whatever fails afterwards, the samples are saved.
     let checkpoint = checkpoint.filter(|_| rendered.progress.samples > 0);

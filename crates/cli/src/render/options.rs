@@ -117,8 +117,8 @@ pub struct Options {
     /// those hold most of the error, a warning says how large it is with them. A picture that is still black after 1024 samples a pixel ends, too.
     #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = noise, help_heading = "Quality")]
     pub noise: Option<f64>,
-    /// Give parts of the picture different numbers of samples, more where its error is larger: to the same --noise with fewer of them where the noise is
-    /// uneven. --spp is then that of a pixel in the mean.
+    /// With --noise: give parts of the picture different numbers of samples, more where its error is larger: to the same --noise with fewer of them where the noise is
+    /// uneven; where that would not save enough, all get as many. --spp is then at most that of a pixel in the mean. `merge` takes no such files.
     #[arg(long, requires = "noise", help_heading = "Quality")]
     pub adaptive: bool,
     /// Render only samples number A to B - 1 of every pixel, as a part that `luminaire merge` joins with others; wants -o PART.exr.

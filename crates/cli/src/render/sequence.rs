@@ -10,6 +10,7 @@ use super::outputs::{save_stats, write_frame};
 use super::progress::Reporter;
 use super::seconds::Seconds;
 use super::stats::Stats;
+use super::summary::samples_of;
 use super::tracing::{layers, limits, note_renderer};
 use super::turn::{PivotName, Turn};
 use crate::shared::error_line::error_line;
@@ -324,7 +325,7 @@ fn written(outcome: &Outcome, files: &[PathBuf]) -> String {
         names.join(", "),
         film.width,
         film.height,
-        film.most_samples(),
+        samples_of(film, outcome.rendered.progress.spp()),
         duration(outcome.seconds.render),
         error_line(film, outcome.rendered.progress.error, outcome.foreseen.lacks_light)
     )

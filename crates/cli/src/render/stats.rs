@@ -34,6 +34,8 @@ pub struct Stats<'a> {
     end: &'static str,
     spp_least: u32,
     spp_most: u32,
+    /// Whether parts of the picture have different numbers of samples: `--adaptive` was asked for and paid.
+    adaptive: bool,
     seed: u32,
     backend: String,
     device: &'a str,
@@ -86,6 +88,7 @@ impl<'a> Stats<'a> {
             },
             spp_least: rendered.film.least_samples(),
             spp_most: rendered.film.most_samples(),
+            adaptive: rendered.shares.is_some(),
             seed: scene.settings.seed,
             backend: renderer.backend.to_string(),
             device: &renderer.device,

@@ -37,7 +37,8 @@ pub struct EstimatorOptions {
     /// How a point on a lamp is chosen: area (evenly), solid-angle (evenly as seen, where the lamp is near).
     #[arg(long, value_name = "NAME", value_parser = named::<AreaSampling>)]
     pub area_sampling: Option<AreaSampling>,
-    /// How one of several luminaires is chosen: power, tree (by what may arrive), auto (the tree where it pays).
+    /// How one of several luminaires is chosen: power, tree (by what may arrive of each), auto (the tree where there are several lamps, else
+    /// power) [default: the scene's, or auto].
     #[arg(long, value_name = "NAME", value_parser = named::<LightChoice>)]
     pub light_choice: Option<LightChoice>,
     /// How the direction of indirect light is chosen: uniform, cosine or bsdf.

@@ -57,9 +57,7 @@ pub fn measure(
     for name in SCENES {
         eprintln!("calibration: {name}");
         let mut scene = scene::load(Path::new(&format!("scenes/{name}/{name}.toml")))?;
-        let film = &mut scene.film;
-        film.height = (f64::from(width) * f64::from(film.height) / f64::from(film.width)).round().max(1.0) as u32;
-        film.width = width;
+        scene.film = scene.film.at_width(width);
         let found = calibrate(&|scene| bench.tracer(scene, backend), &scene, &SAMPLES, seeds, truth)?;
         let mut points = vec![];
         for (index, c) in found.iter().enumerate() {

@@ -94,6 +94,7 @@ fn lit_sphere(name: &str, formula: &'static str, luminaire: Luminaire) -> Case {
                 if area.dot(position - face[0]) > 0.0 { solid_angle(position, face) } else { 0.0 }
             }
             Luminaire::Infinite { direction, .. } => area.dot(-direction.as_dvec3()).max(0.0),
+            _ => unreachable!("a point or infinity"),
         };
         flux += arriving * area.normalize().z.max(0.0);
     }

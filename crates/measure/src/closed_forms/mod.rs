@@ -15,6 +15,7 @@
 mod case;
 mod daylight;
 mod dielectrics;
+mod directed;
 mod form_factors;
 pub mod formulas;
 mod lens;
@@ -31,6 +32,14 @@ pub use views::SIDE;
 
 /// Every case, in the order of the table.
 pub fn cases() -> Vec<Case> {
-    [luminaires::cases(), form_factors::cases(), rooms::cases(), daylight::cases(), dielectrics::cases(), lens::cases()]
-        .concat()
+    [
+        luminaires::cases(),
+        directed::cases(),
+        form_factors::cases(),
+        rooms::cases(),
+        daylight::cases(),
+        dielectrics::cases(),
+        lens::cases(),
+    ]
+    .concat()
 }

@@ -33,6 +33,7 @@ pub const SWEEPS: &[Definition] = &[
     sweeps::glossy::DEFINITION,
     sweeps::luminaire::DEFINITION,
     sweeps::edge_on::DEFINITION,
+    sweeps::spot::DEFINITION,
     sweeps::caustics::DEFINITION,
     sweeps::glossy_caustics::DEFINITION,
     sweeps::albedo::DEFINITION,

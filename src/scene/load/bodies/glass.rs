@@ -80,7 +80,7 @@ impl Glass {
             let turned = outward(mesh, triangle).dot(winding) < 0.0;
             against += usize::from(turned);
             let corners = if turned { [a, c, b] } else { [a, b, c] };
-            let index = scene.materials[material as usize].eta.map_or(0.0, |eta| f64::from(eta).ln());
+            let index = scene.materials[material as usize].index_of_refraction().map_or(0.0, |eta| f64::from(eta).ln());
             faces.push(Face { corners, material, index, surface: 0 });
         }
         let mut glass =

@@ -2,37 +2,50 @@
 //!
 //! The geometry is worth more than a bad number in its materials, so whatever is wrong in an MTL file is a warning with its line.
 
+mod blender;
+mod current;
 mod map_options;
 mod named_files;
+mod physical;
+mod words;
 
 pub(super) use named_files::named_files;
 
-use super::material_draft::{DEFAULT_ETA, Draft, ETAS, LARGEST_EXPONENT, MapDraft};
+use super::material_draft::{Draft, ETAS, LARGEST_EXPONENT, MapDraft};
 use super::text_file::{Tally, logical_lines, read_text, shortened};
 use crate::Result;
+use blender::Blender;
+use current::Current;
 use glam::Vec3;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::path::Path;
 
-/// A mirror-like `Ks` with at least this exponent, or with none, is a perfect mirror.
-const MIRROR_EXPONENT: f32 = 1000.0;
-
 /// So many warnings about one file are kept.
 const MOST_WARNINGS: usize = 100;
-/// So many features that nothing models are named for a material.
-const MOST_IGNORED: usize = 32;
+/// The materials of an MTL file.
+#[derive(Debug)]
+pub(super) struct Library {
+    /// In the order of the file.
+    pub drafts: Vec<Draft>,
+    /// How they were read, where that is a choice.
+    pub note: Option<String>,
+}
 
-/// Reads an MTL file: `Ka Kd Ks Ns Ke Ni Tf d Tr illum`, the maps of the colours and of `d`, and those that bend normals (`map_Bump`, `bump`, `norm`). What `illum` makes of them is a
-/// table in `scenes/README.md`.
+/// Reads an MTL file: `Ka Kd Ks Ns Ke Ni Tf d Tr illum` with the maps of the colours and of `d`, those that bend normals (`map_Bump`, `bump`, `norm`), and
+/// `Pr Pm Ps Pc Pcr aniso anisor` with their maps. What `illum` makes of the first, and what makes a metallic-roughness surface of a material, are tables in
+/// `scenes/README.md`.
 ///
 /// # Errors
 /// Only if the file cannot be read at all.
-pub(super) fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Vec<Draft>> {
+pub(super) fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Library> {
     let text = read_text(path, warnings)?;
+    let blender = Blender::of(&text);
     let mut reader = Reader {
         path,
         warnings,
+        blender,
+        principled: 0,
         line: 0,
         current: None,
         drafts: Vec::new(),
@@ -53,30 +66,17 @@ pub(super) fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Vec<Draft>
     if reader.said > MOST_WARNINGS {
         reader.warnings.push(format!("{}: and {} more warnings", path.display(), reader.said - MOST_WARNINGS));
     }
-    Ok(reader.drafts)
-}
-
-/// The material between two `newmtl`.
-#[derive(Default)]
-struct Current {
-    draft: Draft,
-    illum: Option<u32>,
-    /// `d`, and what follows from `Tr`.
-    dissolve: Option<f32>,
-    transparency: Option<f32>,
-    /// `Tf`.
-    filter: Option<Vec3>,
-    /// `Ni`.
-    refraction: Option<f32>,
-    /// Keywords of features that nothing models.
-    ignored: Vec<String>,
-    /// What exporters write for many materials alike.
-    shared: Vec<String>,
+    let note = blender.filter(|_| reader.principled > 0).map(|blender| blender.note(path));
+    Ok(Library { drafts: reader.drafts, note })
 }
 
 struct Reader<'a> {
     path: &'a Path,
     warnings: &'a mut Vec<String>,
+    /// The program that wrote the file, if it was Blender.
+    blender: Option<Blender>,
+    /// How many materials were read as Blender means them.
+    principled: usize,
     line: usize,
     current: Option<Current>,
     drafts: Vec<Draft>,
@@ -142,9 +142,14 @@ impl Reader<'_> {
             },
             "Km" | "Kt" | "sharpness" => {}
             "bump" | "norm" => self.map(keyword, rest, &mut current),
-            "Pr" | "Pm" | "Ps" | "Pc" | "Pcr" | "aniso" | "anisor" | "disp" | "decal" | "refl" => {
-                current.ignore(shortened(keyword).into_owned());
+            "Pr" | "Pm" | "Ps" | "Pc" | "Pcr" | "aniso" | "anisor" => {
+                // Blender's coat of 4 is one of 1.
+                let most = if keyword == "Pc" && self.blender.is_some() { 4.0 } else { 1.0 };
+                let number = self.bounded(keyword, &words, most);
+                current.words.state(keyword, number);
             }
+            "refl" if self.blender.is_some() => self.map("map_refl", rest, &mut current),
+            "disp" | "decal" | "refl" => current.ignore(shortened(keyword).into_owned()),
             map if map.to_ascii_lowercase().starts_with("map_") => self.map(map, rest, &mut current),
             other => {
                 if self.unknown_keyword.is_empty() {
@@ -159,7 +164,8 @@ impl Reader<'_> {
     /// Keeps a map, with its options.
     fn map(&mut self, keyword: &str, rest: &str, current: &mut Current) {
         let maps = &mut current.draft.maps;
-        let map = match keyword.to_ascii_lowercase().as_str() {
+        let name = keyword.to_ascii_lowercase();
+        let map = match name.as_str() {
             "map_ka" => &mut maps.ambient,
             "map_kd" => &mut maps.diffuse,
             "map_ks" => &mut maps.glossy,
@@ -167,13 +173,16 @@ impl Reader<'_> {
             "map_d" => &mut maps.opacity,
             "map_bump" | "bump" => &mut maps.bump,
             "norm" | "map_kn" => &mut maps.normal,
-            _ => return current.ignore(shortened(keyword).into_owned()),
+            _ => match current.words.map(&name, self.blender.is_some()) {
+                Some(map) => map,
+                None => return current.ignore(shortened(keyword).into_owned()),
+            },
         };
         let folder = self.path.parent().unwrap_or(Path::new(""));
         match map_options::parse(rest, folder, format!("{}:{}", self.path.display(), self.line)) {
             Ok(statement) => {
                 *map = MapDraft::File(statement.map);
-                match keyword.to_ascii_lowercase().as_str() {
+                match name.as_str() {
                     "map_bump" | "bump" => {
                         current.draft.bump_scale = statement.multiplier;
                         current.draft.bump_or_normals = true;
@@ -194,14 +203,20 @@ impl Reader<'_> {
 
     /// Finishes the current material.
     fn close(&mut self) {
-        let Some(mut current) = self.current.take() else { return };
-        let at = format!("{}: material `{}`", self.path.display(), current.draft.name);
-        current.impulses(&at);
-        current.multipliers_of_maps(&at);
-        let Current { mut draft, ignored, shared, .. } = current;
-        let ignored = (!ignored.is_empty()).then(|| format!("not modelled, ignored: {}", ignored.join(", ")));
+        let Some(current) = self.current.take() else { return };
         let file = self.path.display().to_string();
-        draft.shared = shared.into_iter().chain(ignored).map(|said| (file.clone(), said)).collect();
+        let at = format!("{file}: material `{}`", current.draft.name);
+        let not_blenders = self.blender.and_then(|blender| blender.is_another_hand(&current));
+        let blender = self.blender.filter(|_| not_blenders.is_none() || current.words.any());
+        let mut by_the_letter = current.clone().by_the_letter(&file, &at);
+        let physical = physical::draft(current.clone(), blender, &file, &at);
+        let draft = if current.words.any() || blender.is_some() {
+            self.principled += usize::from(blender.is_some());
+            Draft { otherwise: Some(by_the_letter.into()), ..physical }
+        } else {
+            by_the_letter.shared.extend(not_blenders.map(|why| (file, why)));
+            Draft { otherwise: Some(physical.into()), ..by_the_letter }
+        };
         match self.by_name.entry(draft.name.clone()) {
             Entry::Vacant(place) => {
                 place.insert(self.drafts.len());
@@ -251,6 +266,15 @@ impl Reader<'_> {
         Some(colour.max(Vec3::ZERO))
     }
 
+    /// A number from 0 to `most`; one outside of it is clamped, with a warning.
+    fn bounded(&mut self, keyword: &str, words: &[&str], most: f32) -> Option<f32> {
+        let number = self.number(keyword, words, f32::NEG_INFINITY)?;
+        if !(0.0..=most).contains(&number) {
+            self.warn(&format!("{keyword} {number} is outside of 0 to {most}; it is clamped"));
+        }
+        Some(number.clamp(0.0, most))
+    }
+
     /// `d` or `Tr`, a share of 1; `Tr` of more is what [`Current::opacity`] speaks of.
     fn share(&mut self, keyword: &str, words: &[&str]) -> Option<f32> {
         let share = self.number(keyword, words, f32::NEG_INFINITY)?;
@@ -296,141 +320,5 @@ impl Reader<'_> {
             ));
         }
         number
-    }
-}
-
-impl Current {
-    fn ignore(&mut self, what: String) {
-        if self.ignored.len() < MOST_IGNORED && !self.ignored.contains(&what) {
-            self.ignored.push(what);
-        }
-    }
-
-    /// What `illum` makes of `Ks`, `Ns`, `Ni`, `Tf`, `d` and `Tr`.
-    fn impulses(&mut self, at: &str) {
-        let glass = self.illum.filter(|model| matches!(model, 4 | 6 | 7 | 9)).is_some_and(|model| self.is_glass(model));
-        let draft = &mut self.draft;
-        let black = |colour: Option<Vec3>| colour.is_none_or(|colour| colour == Vec3::ZERO);
-        match self.illum {
-            Some(0 | 1) => draft.glossy = None,
-            Some(model @ (3 | 5 | 8))
-                if draft.exponent.is_none_or(|ns| ns >= MIRROR_EXPONENT) && !black(draft.glossy) =>
-            {
-                draft.reflection = draft.glossy.take();
-                draft.eta = self.refraction.filter(|ni| model == 5 && *ni > 1.0);
-                self.unused_map(|draft| &mut draft.maps.glossy, "map_Ks of a mirror");
-            }
-            Some(4 | 6 | 7 | 9) if glass => {
-                draft.reflection = Some(if black(draft.glossy) { Vec3::ONE } else { draft.glossy.unwrap_or_default() });
-                draft.transmission = Some(if black(self.filter) { Vec3::ONE } else { self.filter.unwrap_or_default() });
-                draft.glossy = None;
-                draft.eta = self.refraction.or(Some(DEFAULT_ETA));
-                if self.refraction.is_none() {
-                    draft
-                        .notes
-                        .push(format!("{at} is glass without an index of refraction (Ni); {DEFAULT_ETA} is used"));
-                }
-                self.dissolve = None;
-                self.transparency = None;
-                self.unused_map(|draft| &mut draft.maps.glossy, "map_Ks of glass");
-                self.unused_map(|draft| &mut draft.maps.opacity, "map_d of glass");
-            }
-            _ => {}
-        }
-        if matches!(self.illum, Some(0 | 1)) {
-            self.draft.maps.glossy = MapDraft::Unstated;
-        }
-        self.opacity(at);
-    }
-
-    /// Whether `illum`, which is one of those of glass, makes glass. Many exporters write one of them for everything, so that a material with a
-    /// colour is glass only if it has an index of refraction, too, and nothing says how much of it is there; and a black one is not if its index is 1.
-    fn is_glass(&mut self, illum: u32) -> bool {
-        let draft = &self.draft;
-        let coloured = draft.maps.diffuse.file().is_some() || draft.diffuse.is_some_and(|kd| kd != Vec3::ZERO);
-        if !coloured {
-            // Clear glass that bends nothing cannot be seen, and nobody means that: black rubber, and lamps, are written so.
-            let clear = self.filter.is_none_or(|tf| tf == Vec3::ZERO || tf == Vec3::ONE);
-            let unseen = clear && self.refraction.is_some_and(|ni| (ni - 1.0).abs() <= 1e-3);
-            if unseen {
-                self.shared.push(format!(
-                    "illum {illum} asks for glass, but with Ni 1 and without a tint (Tf) nothing could be seen of it: it is taken as opaque"
-                ));
-            }
-            return !unseen;
-        }
-        let transparency = self.transparency.filter(|tr| *tr < 1.0).map_or(1.0, |tr| 1.0 - tr);
-        let dissolves = self.dissolve.unwrap_or(transparency) < 1.0 || draft.maps.opacity.file().is_some();
-        let refraction = self.refraction.filter(|ni| (ni - 1.0).abs() > 1e-3);
-        let (glass, said) = match refraction {
-            _ if dissolves => (
-                false,
-                "but with a colour (Kd): d, Tr or map_d is taken as the opacity, and nothing is refracted; `Kd 0 0 0` makes it glass".into(),
-            ),
-            _ if self.filter == Some(Vec3::ZERO) => (
-                false,
-                "but with a colour (Kd) and a Tf of 0, through which nothing goes: it is taken as opaque".to_owned(),
-            ),
-            None => (
-                false,
-                "but with a colour (Kd), without transparency (d) and without an index of refraction (Ni): it is taken as opaque; \
-                 `Kd 0 0 0` makes it glass"
-                    .into(),
-            ),
-            Some(ni) => (
-                true,
-                format!(
-                    "with Ni {ni} and a colour (Kd): glass and diffuse share the light; without Ni, or with illum 2, it is opaque, and with \
-                     `Kd 0 0 0` clear glass"
-                ),
-            ),
-        };
-        self.shared.push(format!("illum {illum} asks for glass, {said}"));
-        glass
-    }
-
-    /// `d`, or 1 - `Tr`. They say the same in opposite ways, and exporters disagree on `Tr`: `d` wins where both are given, and what would be
-    /// invisible by `Tr` alone is not meant to be.
-    fn opacity(&mut self, at: &str) {
-        if let (Some(d), Some(tr)) = (self.dissolve, self.transparency)
-            && (d + tr - 1.0).abs() > 1e-3
-        {
-            self.draft.notes.push(format!("{at}: d {d} and Tr {tr} contradict each other; d counts"));
-        }
-        if let (None, Some(tr)) = (self.dissolve, self.transparency)
-            && tr >= 1.0
-        {
-            self.shared.push(format!(
-                "Tr {tr} alone would make it invisible (Tr is 1 - d), but programs that write this mean opaque, as which it is taken: write `d 1` \
-                 in its place, or `d 0` if nothing is to be seen"
-            ));
-            self.transparency = None;
-        }
-        let opacity = self.dissolve.or(self.transparency.map(|tr| 1.0 - tr));
-        self.draft.opacity = opacity.map(|d| d.clamp(0.0, 1.0));
-    }
-
-    /// Drops a map that nothing uses, and says so.
-    fn unused_map(&mut self, map: fn(&mut Draft) -> &mut MapDraft, what: &str) {
-        if std::mem::take(map(&mut self.draft)).file().is_some() {
-            self.ignore(what.to_owned());
-        }
-    }
-
-    /// Exporters write 0 beside a map and mean 1.
-    fn multipliers_of_maps(&mut self, at: &str) {
-        let draft = &mut self.draft;
-        for (keyword, colour, map) in
-            [("Kd", &mut draft.diffuse, &draft.maps.diffuse), ("Ke", &mut draft.emission, &draft.maps.emission)]
-        {
-            if *colour == Some(Vec3::ZERO) && map.file().is_some() {
-                *colour = Some(Vec3::ONE);
-                draft.notes.push(format!("{at}: {keyword} is black beside a map_{keyword}; 1 is used"));
-            }
-        }
-        if draft.opacity == Some(0.0) && draft.maps.opacity.file().is_some() {
-            draft.opacity = Some(1.0);
-            draft.notes.push(format!("{at}: d is 0 beside a map_d; 1 is used"));
-        }
     }
 }

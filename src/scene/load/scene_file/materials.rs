@@ -1,11 +1,13 @@
 //! The materials of a model as tables, in comments: uncommented, they change nothing, but where several materials have one name.
 
-use super::words::{number, path, quoted, triple};
+use super::maps::map_line;
+use super::physical;
+use super::relief;
+use super::words::{number, quoted, triple};
 use crate::Result;
 use crate::scene::load::material_draft::{Draft, MapDraft};
-use crate::scene::load::texture::{Channel, MapFile};
 use crate::scene::{Material, Scene};
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 use std::collections::HashMap;
 use std::path::Path;
 
@@ -27,6 +29,23 @@ const KEYS: &str = "\
 #   impulse_probability above 0 and below 1: how often a path takes the mirror or glass; changes the noise, never the mean
 #   diffuse_map, glossy_map, emission_map, ambient_map, opacity_map
 #                       an image that multiplies the number: \"FILE\", or { image = \"FILE\", scale = [2, 2], offset = [0.5, 0] }; \"\" removes it
+# In place of diffuse, glossy, exponent, reflection, transmission, eta and impulse_probability, a metallic-roughness surface, as glTF describes it, has:
+#   base_colour         colour of what is diffuse, of metal, and of what passes, RGB from 0 to 1
+#   metallic, roughness how much of it is metal, and how rough it is, 0 (smooth) to 1
+#   ior                 index of refraction, 1 to 100, by which it reflects where it is no metal; 0: it reflects all of `specular_colour`
+#   specular, specular_colour
+#                       factors to that reflection: everywhere, 0 to 1, and seen from straight above, RGB of 0 or more
+#   conductor           \"gold\", \"silver\", \"copper\", \"aluminium\" and others, or { eta = [r, g, b], k = [r, g, b] }: a metal by its numbers
+#   transmission        share of light that passes in place of being scattered, 0 to 1; `thin = true` as above
+#   attenuation_colour, attenuation_distance
+#                       what is left of white light behind so long a way within, RGB above 0, and the way
+#   clearcoat, clearcoat_roughness
+#                       strength and roughness of a varnish of index 1.5, 0 to 1
+#   sheen_colour, sheen_roughness, anisotropy, anisotropy_rotation, iridescence, iridescence_ior, iridescence_thickness, dispersion
+#                       scenes/README.md has them
+#   model               \"metallic-roughness\" or \"blinn-phong\": which of both it is, where no other key says it
+#   base_colour_map, metallic_map, roughness_map and others
+#                       images, as above; that of a number may say which channel it is: { image = \"FILE\", channel = \"g\" }
 ";
 
 /// A commented table for each material that the model names or shows; `drafts` are what the first materials of the scene are made of. Files are named as
@@ -78,6 +97,9 @@ pub(super) fn tables(scene: &Scene, drafts: &[Draft], folder: &Path) -> Result<S
 
 /// The keys of one material that mean something for it.
 fn table(material: &Material, draft: &Draft, folder: &Path) -> Result<String> {
+    if let (Some(surface), Some(physical)) = (&material.physical, &draft.physical) {
+        return physical::table(material, surface, draft, physical, folder);
+    }
     let m = material;
     let mut text = String::new();
     let mut key = |name: &str, value: String| text += &format!("# {name} = {value}\n");
@@ -108,52 +130,22 @@ fn table(material: &Material, draft: &Draft, folder: &Path) -> Result<String> {
         key("ambient", triple(m.ambient));
     }
     key("opacity", number(m.opacity));
-    if let Some(map) = m.normal_map {
-        key("normal_scale", number(map.scale));
-    }
-    if let Some(map) = m.bump_map {
-        key("bump_scale", number(map.scale));
-    }
     // What has no albedo of its own here has the diffuse one, with its map.
     let ambient_map = match (&draft.maps.ambient, draft.ambient, m.maps.ambient) {
         (MapDraft::Unstated, None, Some(_)) if m.ambient != m.lambert => &draft.maps.diffuse,
         (own, ..) => own,
     };
-    // The word of MTL files for heights may have turned out to mean normals.
-    let normals = if draft.maps.normal.file().is_some() { &draft.maps.normal } else { &draft.maps.bump };
     let maps = [
         ("diffuse_map", &draft.maps.diffuse),
         ("glossy_map", &draft.maps.glossy),
         ("emission_map", &draft.maps.emission),
         ("ambient_map", ambient_map),
         ("opacity_map", &draft.maps.opacity),
-        ("normal_map", if m.normal_map.is_some() { normals } else { &MapDraft::Unstated }),
-        ("bump_map", if m.bump_map.is_some() { &draft.maps.bump } else { &MapDraft::Unstated }),
     ];
     for (name, map) in maps {
         if let MapDraft::File(map) = map {
-            text += &map_line(name, map, folder)?;
+            text += &map_line(name, map, name == "opacity_map", folder)?;
         }
     }
-    Ok(text)
-}
-
-/// The line of a map. What a scene file cannot say of it is no key.
-fn map_line(name: &str, map: &MapFile, folder: &Path) -> Result<String> {
-    let Some(file) = map.path() else {
-        let named = map.names.first().map_or("", String::as_str);
-        return Ok(format!("#   {name}: {}, which is not there\n", quoted(named)));
-    };
-    let file = quoted(&path(&file, folder)?);
-    let plain = !map.clamp && map.base == 0.0 && map.gain == 1.0 && map.channel == Channel::Any;
-    if !plain {
-        return Ok(format!("#   {name}: {file}, with options of the MTL file that a scene file has no keys for\n"));
-    }
-    let pair = |v: Vec2| format!("[{}, {}]", number(v.x), number(v.y));
-    Ok(match (map.scale, map.offset) {
-        (Vec2::ONE, Vec2::ZERO) => format!("# {name} = {file}\n"),
-        (scale, offset) => {
-            format!("# {name} = {{ image = {file}, scale = {}, offset = {} }}\n", pair(scale), pair(offset))
-        }
-    })
+    Ok(text + &relief::lines(m, draft, folder)?)
 }

@@ -1,7 +1,10 @@
 //! A bare model as a scene file, to be changed: what was chosen for it, and every key with what it means.
 
 mod groups;
+mod maps;
 mod materials;
+mod physical;
+mod relief;
 mod words;
 
 use super::bare_mesh::{self, BareMesh, Z_UP};
@@ -287,7 +290,15 @@ const LUMINAIRES: &str = "
 # position = [0, 1, 0]
 # intensity = [1, 1, 1]
 # [[luminaire]]
+# kind = \"spot\"                          # a point that shines into a cone: no light beyond outer_angle from direction, all of it within inner_angle
+# position = [0, 3, 0]
+# direction = [0, -1, 0]
+# intensity = [1, 1, 1]
+# inner_angle = 20
+# outer_angle = 30
+# [[luminaire]]
 # kind = \"infinite\"                      # direction in which the light travels; irradiance on a surface that faces it
 # direction = [0.3, -0.8, -0.7]
 # irradiance = [1, 1, 1]
+# angle = 0                              # diameter of a disc that is seen and has soft shadows: 0.53 is the sun's, at most 180
 ";

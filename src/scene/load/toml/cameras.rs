@@ -17,11 +17,6 @@ impl Sensors {
             Sensors::Several(tables) => tables.iter().map(|table| (table.get_ref(), table.span())).collect(),
         }
     }
-
-    /// About where the scene is, before its origin is known.
-    pub(super) fn near(&self) -> DVec3 {
-        self.tables(0..0).first().map_or(DVec3::ZERO, |(table, _)| far_origin(table.position.0))
-    }
 }
 
 impl File<'_> {

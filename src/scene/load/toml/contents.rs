@@ -1,104 +1,21 @@
-//! The tables `[[luminaire]]`, `[[material]]` and `[[object]]` of a scene file.
+//! The table `[[object]]` of a scene file.
 
 use super::file::File;
 use super::radians;
-use super::tables::{LuminaireEntry, LuminaireKind, MapEntry, MaterialTable, ObjectTable, PlacedMap, Scale};
+use super::tables::{ObjectTable, Scale};
 use super::values::{Matrix, Triple};
+use crate::scene::Object;
 use crate::scene::load::loader::Loader;
-use crate::scene::load::material_draft::{Draft, DraftMaps, MapDraft};
 use crate::scene::load::near_name::instead_of;
 use crate::scene::load::obj;
 use crate::scene::load::other_formats;
 use crate::scene::load::text_file::{line_and_column, shortened};
-use crate::scene::load::texture::MapFile;
-use crate::scene::{Luminaire, Object};
 use crate::{Error, Result};
 use ::toml::Spanned;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
-use std::collections::HashSet;
 use std::path::Path;
 
 impl File<'_> {
-    /// A `[[luminaire]]`, in a scene with this origin.
-    pub(super) fn luminaire(&self, table: &Spanned<LuminaireEntry>, origin: DVec3) -> Result<Luminaire> {
-        let LuminaireEntry { kind, position, intensity, direction, irradiance } = table.get_ref();
-        match (kind, position, intensity, direction, irradiance) {
-            (LuminaireKind::Point, Some(position), Some(intensity), None, None) => {
-                Ok(Luminaire::Point { position: (position.0 - origin).as_vec3(), intensity: intensity.0 })
-            }
-            (LuminaireKind::Infinite, None, None, Some(direction), Some(irradiance)) => {
-                let Some(direction) = direction.rounded().as_dvec3().try_normalize() else {
-                    return Err(self.error(table.span(), "the direction of the luminaire is the zero vector"));
-                };
-                Ok(Luminaire::Infinite { direction: direction.as_vec3(), irradiance: irradiance.0 })
-            }
-            (LuminaireKind::Point, ..) => {
-                Err(self.error(table.span(), "a point luminaire has `position` and `intensity`, both and nothing else"))
-            }
-            (LuminaireKind::Infinite, ..) => Err(self
-                .error(table.span(), "an infinite luminaire has `direction` and `irradiance`, both and nothing else")),
-        }
-    }
-
-    pub(super) fn materials(&self, tables: &[MaterialTable]) -> Result<Vec<Draft>> {
-        let mut names = HashSet::new();
-        let draft = |table: &MaterialTable| {
-            let name = table.name.get_ref();
-            if !names.insert(name.clone()) {
-                return Err(self.error(table.name.span(), format!("a second [[material]] named `{name}`")));
-            }
-            Ok(Draft {
-                name: name.clone(),
-                ambient: table.ambient.map(|colour| colour.0),
-                diffuse: table.diffuse.map(|colour| colour.0),
-                glossy: table.glossy.map(|colour| colour.0),
-                exponent: table.exponent.map(|exponent| exponent.0),
-                emission: table.emission.map(|colour| colour.0),
-                one_sided: table.one_sided,
-                reflection: table.reflection.map(|colour| colour.0),
-                transmission: table.transmission.map(|colour| colour.0),
-                eta: table.eta.map(|eta| eta.0),
-                thin: table.thin,
-                impulse_probability: table.impulse_probability.map(|probability| probability.0),
-                opacity: table.opacity.map(|opacity| opacity.0),
-                normal_scale: table.normal_scale.as_ref().map(|scale| scale.get_ref().0),
-                bump_scale: table.bump_scale.as_ref().map(|scale| scale.get_ref().0),
-                maps: DraftMaps {
-                    ambient: self.map(&table.ambient_map)?,
-                    diffuse: self.map(&table.diffuse_map)?,
-                    glossy: self.map(&table.glossy_map)?,
-                    emission: self.map(&table.emission_map)?,
-                    opacity: self.map(&table.opacity_map)?,
-                    normal: self.map(&table.normal_map)?,
-                    bump: self.map(&table.bump_map)?,
-                },
-                ..Draft::default()
-            })
-        };
-        tables.iter().map(draft).collect()
-    }
-
-    /// A map; the empty name removes what an MTL file says.
-    fn map(&self, entry: &Option<Spanned<MapEntry>>) -> Result<MapDraft> {
-        let Some(entry) = entry else { return Ok(MapDraft::Unstated) };
-        let (name, scale, offset) = match entry.get_ref() {
-            MapEntry::Image(name) => (name, None, None),
-            MapEntry::Placed(PlacedMap { image, scale, offset }) => (image, *scale, *offset),
-        };
-        if name.is_empty() {
-            return Ok(MapDraft::Removed);
-        }
-        let path = self.beside(name);
-        // What is wrong with the image itself is a warning, as it is in an MTL file.
-        std::fs::metadata(&path)
-            .map_err(|error| self.error(entry.span(), Error::read(&path, error).to_string() + &instead_of(&path)))?;
-        let at = format!("{}:{}", self.path.display(), line_and_column(self.text, entry.span().start).0);
-        let plain = MapFile::plain(vec![name.clone()], self.folder(), at);
-        let scale = scale.map_or(plain.scale, |scale| scale.0);
-        let offset = offset.map_or(plain.offset, |offset| offset.0);
-        Ok(MapDraft::File(MapFile { scale, offset, ..plain }))
-    }
-
     /// An `[[object]]`, and where it stands to every digit.
     pub(super) fn object(&self, table: &Spanned<ObjectTable>, loader: &mut Loader) -> Result<(Object, DAffine3)> {
         let object = table.get_ref();

@@ -5,6 +5,8 @@ mod cameras;
 mod contents;
 mod file;
 mod foreign_words;
+mod luminaires;
+mod materials;
 mod radians;
 mod settings;
 mod tables;
@@ -20,7 +22,7 @@ use crate::{Error, Result};
 use advice::{in_plain_words, wrong_brackets};
 pub(super) use cameras::camera_file;
 use file::{File, read_text};
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use std::path::Path;
 use tables::{GroundTable, SceneFile};
 
@@ -58,11 +60,10 @@ impl File<'_> {
         };
         let film = self.film(file.film)?;
         let integrator = self.integrator(&file.integrator.take().unwrap_or_default())?;
-        // What is wrong in this file is said before any other file is read; where the origin is, only those know.
-        let near = file.sensor.as_ref().map_or(DVec3::ZERO, |sensors| sensors.get_ref().near());
+        // What is wrong in this file is said before any other file is read.
         let cameras = self.cameras(file.sensor.as_ref(), None)?;
         for table in &file.luminaire {
-            self.luminaire(table, near)?;
+            self.check_luminaire(table)?;
         }
         let mut loader = Loader::new(self.materials(&file.material)?);
         loader.files.push(self.path.to_owned());
@@ -92,8 +93,10 @@ impl File<'_> {
         }
         let origin = loader.settle(&mut objects, &to_world);
         let cameras: Vec<Camera> = self.cameras(file.sensor.as_ref(), Some(origin))?;
-        let luminaires: Result<Vec<_>> = file.luminaire.iter().map(|table| self.luminaire(table, origin)).collect();
-        let luminaires = luminaires?;
+        let mut luminaires = Vec::new();
+        for table in &file.luminaire {
+            luminaires.push(self.luminaire(table, origin, &mut loader)?);
+        }
         let defaults = RenderSettings::default();
         let settings = RenderSettings {
             spp: file.render.spp.map_or(defaults.spp, |spp| spp.0),
@@ -121,7 +124,7 @@ impl File<'_> {
             settings,
             files: loader.files,
             warnings: loader.warnings,
-            notes: Vec::new(),
+            notes: loader.notes,
             ground: None,
         };
         reach::check(&scene)?;

@@ -14,6 +14,17 @@ pub(super) fn field_of_view(fov: f32) -> Option<String> {
     })
 }
 
+/// The outer angle of a spot that is usual in radians, as glTF has it.
+pub(super) fn cone(outer: f32) -> Option<String> {
+    let usual = (0.2..=FRAC_PI_2 + 0.01).contains(&outer);
+    usual.then(|| {
+        format!(
+            "outer_angle = {outer} is in degrees, a narrow beam; if radians are meant, write {:.1}",
+            outer.to_degrees()
+        )
+    })
+}
+
 /// Turns that are all multiples of a twelfth of pi, to the digits that people write.
 pub(super) fn rotation(angles: Vec3) -> Option<String> {
     let twelfth = |angle: f32| {

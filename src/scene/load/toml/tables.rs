@@ -1,8 +1,9 @@
 //! The tables of a scene file, as `scenes/README.md` describes them.
 
 use super::values::{
-    Albedo, Angle, Blades, Bounces, Colour, Eta, Exact, Exponent, Exposure, FilterRadius, Finite, Fov, MapOffset,
-    MapScale, Matrix, NotNegative, Pixels, Positive, Probability, Samples, Shift, Triple, Unit,
+    Albedo, Angle, Attenuation, Blades, Bounces, Colour, ConeAngle, DiscAngle, Eta, Exact, Exponent, Exposure, FilmIor,
+    FilmThickness, FilterRadius, Finite, Fov, Ior, MapOffset, MapScale, Matrix, NotNegative, Pixels, Positive,
+    Probability, Samples, Shift, Transmission, Triple, Unit,
 };
 use crate::scene::{AreaSampling, Directions, Extinction, Filter, LightChoice, LightSampling, Sampler, Tone};
 use ::toml::Spanned;
@@ -185,7 +186,7 @@ pub(super) struct MaterialTable {
     pub emission: Option<Colour>,
     pub one_sided: Option<bool>,
     pub reflection: Option<Colour>,
-    pub transmission: Option<Colour>,
+    pub transmission: Option<Transmission>,
     pub eta: Option<Eta>,
     pub thin: Option<bool>,
     pub impulse_probability: Option<Probability>,
@@ -199,12 +200,70 @@ pub(super) struct MaterialTable {
     pub opacity_map: Option<Spanned<MapEntry>>,
     pub normal_map: Option<Spanned<MapEntry>>,
     pub bump_map: Option<Spanned<MapEntry>>,
+    pub model: Option<Model>,
+    pub base_colour: Option<Albedo>,
+    pub metallic: Option<Unit>,
+    pub roughness: Option<Unit>,
+    pub ior: Option<Ior>,
+    pub specular: Option<Unit>,
+    pub specular_colour: Option<Colour>,
+    pub conductor: Option<Spanned<ConductorEntry>>,
+    pub attenuation_colour: Option<Attenuation>,
+    pub attenuation_distance: Option<Positive>,
+    pub clearcoat: Option<Unit>,
+    pub clearcoat_roughness: Option<Unit>,
+    pub sheen_colour: Option<Albedo>,
+    pub sheen_roughness: Option<Unit>,
+    pub anisotropy: Option<Unit>,
+    pub anisotropy_rotation: Option<Exact>,
+    pub iridescence: Option<Unit>,
+    pub iridescence_ior: Option<FilmIor>,
+    pub iridescence_thickness: Option<FilmThickness>,
+    pub dispersion: Option<NotNegative>,
+    pub base_colour_map: Option<Spanned<MapEntry>>,
+    pub metallic_map: Option<Spanned<MapEntry>>,
+    pub roughness_map: Option<Spanned<MapEntry>>,
+    pub specular_map: Option<Spanned<MapEntry>>,
+    pub specular_colour_map: Option<Spanned<MapEntry>>,
+    pub transmission_map: Option<Spanned<MapEntry>>,
+    pub clearcoat_map: Option<Spanned<MapEntry>>,
+    pub clearcoat_roughness_map: Option<Spanned<MapEntry>>,
+    pub sheen_colour_map: Option<Spanned<MapEntry>>,
+    pub sheen_roughness_map: Option<Spanned<MapEntry>>,
+    pub anisotropy_map: Option<Spanned<MapEntry>>,
+    pub iridescence_map: Option<Spanned<MapEntry>>,
+    pub iridescence_thickness_map: Option<Spanned<MapEntry>>,
+}
+
+/// What a surface is.
+#[derive(Deserialize, Clone, Copy, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Model {
+    BlinnPhong,
+    MetallicRoughness,
 }
 
 #[derive(Deserialize)]
 #[serde(
     untagged,
-    expecting = "expected the name of an image, or { image = NAME, scale = [u, v], offset = [u, v] } with numbers from -1e6 to 1e6 and no scale of 0"
+    expecting = "expected the name of a metal, or { eta = [r, g, b], k = [r, g, b] }, its index of refraction and its extinction coefficient"
+)]
+pub(super) enum ConductorEntry {
+    Metal(String),
+    Numbers(ConductorTable),
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ConductorTable {
+    pub eta: Colour,
+    pub k: Colour,
+}
+
+#[derive(Deserialize)]
+#[serde(
+    untagged,
+    expecting = "expected the name of an image, or { image = NAME, scale = [u, v], offset = [u, v], channel = \"r\" } with numbers from -1e6 to 1e6, no scale of 0, and of the maps of numbers a channel: \"r\", \"g\", \"b\", \"a\" or \"luminance\""
 )]
 pub(super) enum MapEntry {
     Image(String),
@@ -217,6 +276,18 @@ pub(super) struct PlacedMap {
     pub image: String,
     pub scale: Option<MapScale>,
     pub offset: Option<MapOffset>,
+    pub channel: Option<MapChannel>,
+}
+
+/// The channel of an image that is a number.
+#[derive(Deserialize, Clone, Copy)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum MapChannel {
+    R,
+    G,
+    B,
+    A,
+    Luminance,
 }
 
 #[derive(Deserialize)]
@@ -225,13 +296,19 @@ pub(super) struct LuminaireEntry {
     pub kind: LuminaireKind,
     pub position: Option<Triple>,
     pub intensity: Option<Colour>,
+    pub profile: Option<Spanned<String>>,
     pub direction: Option<Triple>,
+    pub up: Option<Triple>,
+    pub inner_angle: Option<Spanned<ConeAngle>>,
+    pub outer_angle: Option<ConeAngle>,
     pub irradiance: Option<Colour>,
+    pub angle: Option<DiscAngle>,
 }
 
 #[derive(Deserialize, Clone, Copy)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum LuminaireKind {
     Point,
+    Spot,
     Infinite,
 }

@@ -1,10 +1,11 @@
 //! Numbers of a scene file that are checked as they are read, so that an error points at the very value.
 
-use crate::scene::Estimator;
 use crate::scene::load::material_draft::{ETAS, LARGEST_EXPONENT};
 use crate::scene::load::texture::LARGEST_TRANSFORM;
+use crate::scene::{Estimator, LEAST_ANGLE};
 use glam::{DVec2, DVec3, Vec2, Vec3};
-use serde::de::{SeqAccess, Visitor};
+use serde::de::value::SeqAccessDeserializer;
+use serde::de::{Error, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
 /// Most pixels in a row or a column.
@@ -110,6 +111,66 @@ pub(super) struct Colour(pub Vec3);
 #[serde(try_from = "Numbers<3>")]
 pub(super) struct Albedo(pub Vec3);
 
+/// What passes into a material: of Blinn-Phong's an albedo, of a metallic-roughness surface a share.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Transmission {
+    /// Linear RGB, not negative.
+    Albedo(Vec3),
+    /// From 0 to 1.
+    Share(f32),
+}
+
+impl<'de> Deserialize<'de> for Transmission {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+        // Not an untagged enum, which would lose the words of errors within.
+        struct Either;
+        impl<'de> Visitor<'de> for Either {
+            type Value = Transmission;
+            fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+                f.write_str("three numbers [r, g, b], or one of a metallic-roughness material")
+            }
+            fn visit_f64<E: Error>(self, number: f64) -> std::result::Result<Transmission, E> {
+                Unit::try_from(number).map(|share| Transmission::Share(share.0)).map_err(E::custom)
+            }
+            fn visit_i64<E: Error>(self, number: i64) -> std::result::Result<Transmission, E> {
+                self.visit_f64(number as f64)
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> std::result::Result<Transmission, A::Error> {
+                let colour = Colour::deserialize(SeqAccessDeserializer::new(list))?;
+                Ok(Transmission::Albedo(colour.0))
+            }
+        }
+        deserializer.deserialize_any(Either)
+    }
+}
+
+/// Linear RGB above 0, at most 1.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(try_from = "Numbers<3>")]
+pub(super) struct Attenuation(pub Vec3);
+
+/// An index of refraction of at least 1; 0 stands for an infinite one.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(try_from = "f64")]
+pub(super) struct Ior(pub f32);
+
+/// The index of refraction of a film.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(try_from = "f64")]
+pub(super) struct FilmIor(pub f32);
+
+/// The thickness of a film in nanometres: the same everywhere, or the least and the greatest.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(try_from = "NumberOrPair")]
+pub(super) struct FilmThickness(pub [f32; 2]);
+
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "expected nanometres, or two of them [least, greatest]")]
+enum NumberOrPair {
+    Number(f64),
+    Pair([f64; 2]),
+}
+
 /// A field of view in degrees.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(try_from = "f64")]
@@ -156,6 +217,16 @@ pub(super) struct Probability(pub f32);
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(try_from = "f64")]
 pub(super) struct Angle(pub f32);
+
+/// Degrees from the axis of a spot.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(try_from = "f64")]
+pub(super) struct ConeAngle(pub f32);
+
+/// The diameter of a disc at infinity in degrees.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(try_from = "f64")]
+pub(super) struct DiscAngle(pub f32);
 
 /// Radius of a pixel filter in pixels.
 #[derive(Debug, Clone, Copy, Deserialize)]
@@ -241,6 +312,47 @@ impl TryFrom<Numbers<3>> for Albedo {
         let albedo = DVec3::from(numbers).as_vec3();
         let shares = albedo.to_array().iter().all(|share| (0.0..=1.0).contains(share));
         shares.then_some(Albedo(albedo)).ok_or("expected linear RGB: three numbers from 0 to 1")
+    }
+}
+
+impl TryFrom<Numbers<3>> for Attenuation {
+    type Error = &'static str;
+    fn try_from(Numbers(numbers): Numbers<3>) -> Checked<Self> {
+        let colour = DVec3::from(numbers).as_vec3();
+        let some = colour.to_array().iter().all(|share| *share > 0.0 && *share <= 1.0);
+        some.then_some(Attenuation(colour)).ok_or("expected linear RGB: three numbers above 0, at most 1")
+    }
+}
+
+impl TryFrom<f64> for Ior {
+    type Error = &'static str;
+    fn try_from(number: f64) -> Checked<Self> {
+        let ior = number as f32;
+        let some = ior == 0.0 || (1.0..=*ETAS.end()).contains(&ior);
+        some.then_some(Ior(ior)).ok_or(
+            "expected an index of refraction from 1 to 100, or 0 for a surface that reflects all of its `specular_colour`",
+        )
+    }
+}
+
+impl TryFrom<f64> for FilmIor {
+    type Error = &'static str;
+    fn try_from(number: f64) -> Checked<Self> {
+        let some = (1.0..=f64::from(*ETAS.end())).contains(&number);
+        some.then_some(FilmIor(number as f32)).ok_or("expected an index of refraction from 1 to 100")
+    }
+}
+
+impl TryFrom<NumberOrPair> for FilmThickness {
+    type Error = &'static str;
+    fn try_from(said: NumberOrPair) -> Checked<Self> {
+        let thickness = match said {
+            NumberOrPair::Number(both) => [both as f32; 2],
+            NumberOrPair::Pair(pair) => pair.map(|number| number as f32),
+        };
+        let some = thickness.iter().all(|number| number.is_finite() && *number >= 0.0);
+        some.then_some(FilmThickness(thickness))
+            .ok_or("expected nanometres of at least 0, or two of them [least, greatest]")
     }
 }
 
@@ -341,6 +453,26 @@ impl TryFrom<f64> for Angle {
     type Error = &'static str;
     fn try_from(degrees: f64) -> Checked<Self> {
         (0.0..=180.0).contains(&degrees).then_some(Angle(degrees as f32)).ok_or("expected degrees from 0 to 180")
+    }
+}
+
+impl TryFrom<f64> for ConeAngle {
+    type Error = &'static str;
+    fn try_from(degrees: f64) -> Checked<Self> {
+        let angle = degrees as f32;
+        (0.0..=90.0).contains(&angle).then_some(ConeAngle(angle)).ok_or(
+            "expected degrees from the axis, 0 to 90; what shines further is a \"point\", with a `profile` perhaps",
+        )
+    }
+}
+
+impl TryFrom<f64> for DiscAngle {
+    type Error = &'static str;
+    fn try_from(degrees: f64) -> Checked<Self> {
+        let angle = degrees as f32;
+        (angle == 0.0 || (LEAST_ANGLE..=180.0).contains(&angle))
+            .then_some(DiscAngle(angle))
+            .ok_or("expected the diameter in degrees, 0.0001 to 180 (the sun's is 0.53), or 0 for parallel light")
     }
 }
 

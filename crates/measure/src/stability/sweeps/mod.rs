@@ -16,4 +16,5 @@ pub mod many;
 pub mod samples;
 pub mod scale;
 pub mod slivers;
+pub mod spot;
 pub mod touching_glass;

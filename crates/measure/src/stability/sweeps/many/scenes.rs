@@ -4,7 +4,8 @@ use crate::stability::rooms::{furnace, without_roulette};
 use glam::{Affine3A, Vec2, Vec3};
 use luminaire::scene::build::{add, empty, icosphere, lamp, matte, quad};
 use luminaire::scene::{
-    Environment, Estimator, FilmSettings, Integrator, LightSampling, Mesh, Projection, Scene, Sensor, Triangle,
+    Environment, Estimator, FilmSettings, Integrator, LightChoice, LightSampling, Mesh, Projection, Scene, Sensor,
+    Triangle,
 };
 
 /// Pixels of the pictures of lamps and instances.
@@ -12,7 +13,7 @@ pub(super) const SIZE: (u32, u32) = (16, 16);
 
 /// A street without end: a floor of `n` squares with a small lamp one unit above the middle of each, of which the picture shows one.
 /// Direct light only.
-pub(super) fn city(n: u32, light_sampling: LightSampling) -> Scene {
+pub(super) fn city(n: u32, light_sampling: LightSampling, light_choice: LightChoice) -> Scene {
     let mut scene = empty(SIZE.0, SIZE.1);
     let side = f64::from(n).sqrt().ceil() as u32;
     let middle = (side / 2) as f32 + 0.5;
@@ -36,7 +37,8 @@ pub(super) fn city(n: u32, light_sampling: LightSampling) -> Scene {
         lamps.triangles.push(Triangle { vertices: [first, first + 1, first + 2], material: 0 });
     }
     add(&mut scene, lamps, lamp(Vec3::splat(100.0)), Affine3A::IDENTITY);
-    scene.integrator = Integrator::Path(Estimator { light_sampling, max_bounces: Some(0), ..Estimator::default() });
+    scene.integrator =
+        Integrator::Path(Estimator { light_sampling, light_choice, max_bounces: Some(0), ..Estimator::default() });
     scene
 }
 

@@ -1,0 +1,290 @@
+//! What makes a metallic-roughness surface of a material, while it is still being read: what nobody has said yet is `None`.
+
+use super::map_draft::MapDraft;
+use super::texture::{MapFile, Textures};
+use crate::scene::{ChannelMap, Physical, PhysicalMaps};
+use glam::Vec3;
+
+/// What MTL and scene file say of a [`Physical`] surface, but for its base colour. Units and ranges are those of the fields of the same name.
+#[derive(Debug, Clone, Default)]
+pub(super) struct PhysicalDraft {
+    pub metallic: Option<f32>,
+    pub roughness: Option<f32>,
+    pub anisotropy: Option<f32>,
+    pub anisotropy_rotation: Option<f32>,
+    pub ior: Option<f32>,
+    pub specular: Option<f32>,
+    pub specular_color: Option<Vec3>,
+    pub conductor: Option<[Vec3; 2]>,
+    pub transmission: Option<f32>,
+    pub attenuation_color: Option<Vec3>,
+    pub attenuation_distance: Option<f32>,
+    pub clearcoat: Option<f32>,
+    pub clearcoat_roughness: Option<f32>,
+    pub sheen_color: Option<Vec3>,
+    pub sheen_roughness: Option<f32>,
+    pub iridescence: Option<f32>,
+    pub iridescence_ior: Option<f32>,
+    pub iridescence_thickness: Option<[f32; 2]>,
+    pub dispersion: Option<f32>,
+    /// The maps of all these.
+    pub maps: PhysicalDraftMaps,
+}
+
+/// The maps of a [`PhysicalDraft`].
+#[derive(Debug, Clone, Default)]
+pub(super) struct PhysicalDraftMaps {
+    pub metallic: MapDraft,
+    pub roughness: MapDraft,
+    pub anisotropy: MapDraft,
+    pub specular: MapDraft,
+    pub specular_color: MapDraft,
+    pub transmission: MapDraft,
+    pub clearcoat: MapDraft,
+    pub clearcoat_roughness: MapDraft,
+    pub sheen_color: MapDraft,
+    pub sheen_roughness: MapDraft,
+    pub iridescence: MapDraft,
+    pub iridescence_thickness: MapDraft,
+}
+
+impl PhysicalDraftMaps {
+    /// All of them.
+    pub(super) fn all(&self) -> [&MapDraft; 12] {
+        let PhysicalDraftMaps { metallic, roughness, anisotropy, specular, specular_color, transmission, .. } = self;
+        let PhysicalDraftMaps { clearcoat, clearcoat_roughness, sheen_color, sheen_roughness, .. } = self;
+        let PhysicalDraftMaps { iridescence, iridescence_thickness, .. } = self;
+        [
+            metallic,
+            roughness,
+            anisotropy,
+            specular,
+            specular_color,
+            transmission,
+            clearcoat,
+            clearcoat_roughness,
+            sheen_color,
+            sheen_roughness,
+            iridescence,
+            iridescence_thickness,
+        ]
+    }
+
+    fn all_mut(&mut self) -> [&mut MapDraft; 12] {
+        let PhysicalDraftMaps {
+            metallic,
+            roughness,
+            anisotropy,
+            specular,
+            specular_color,
+            transmission,
+            clearcoat,
+            clearcoat_roughness,
+            sheen_color,
+            sheen_roughness,
+            iridescence,
+            iridescence_thickness,
+        } = self;
+        [
+            metallic,
+            roughness,
+            anisotropy,
+            specular,
+            specular_color,
+            transmission,
+            clearcoat,
+            clearcoat_roughness,
+            sheen_color,
+            sheen_roughness,
+            iridescence,
+            iridescence_thickness,
+        ]
+    }
+}
+
+impl PhysicalDraft {
+    /// Replaces what `other` states.
+    pub(super) fn overlay(&mut self, other: &PhysicalDraft) {
+        self.metallic = other.metallic.or(self.metallic);
+        self.roughness = other.roughness.or(self.roughness);
+        self.anisotropy = other.anisotropy.or(self.anisotropy);
+        self.anisotropy_rotation = other.anisotropy_rotation.or(self.anisotropy_rotation);
+        self.ior = other.ior.or(self.ior);
+        self.specular = other.specular.or(self.specular);
+        self.specular_color = other.specular_color.or(self.specular_color);
+        self.conductor = other.conductor.or(self.conductor);
+        self.transmission = other.transmission.or(self.transmission);
+        self.attenuation_color = other.attenuation_color.or(self.attenuation_color);
+        self.attenuation_distance = other.attenuation_distance.or(self.attenuation_distance);
+        self.clearcoat = other.clearcoat.or(self.clearcoat);
+        self.clearcoat_roughness = other.clearcoat_roughness.or(self.clearcoat_roughness);
+        self.sheen_color = other.sheen_color.or(self.sheen_color);
+        self.sheen_roughness = other.sheen_roughness.or(self.sheen_roughness);
+        self.iridescence = other.iridescence.or(self.iridescence);
+        self.iridescence_ior = other.iridescence_ior.or(self.iridescence_ior);
+        self.iridescence_thickness = other.iridescence_thickness.or(self.iridescence_thickness);
+        self.dispersion = other.dispersion.or(self.dispersion);
+        self.maps.all_mut().into_iter().zip(other.maps.all()).for_each(|(map, other)| map.overlay(other));
+    }
+
+    /// Fills in the defaults and loads the maps; what is guessed, does nothing or is not modelled is a warning. The base colour is left white, without a map.
+    ///
+    /// A missing number whose map is given is 1. A `conductor` is a metal unless `metallic` says otherwise.
+    pub(super) fn finish(
+        &self,
+        name: &str,
+        thin: bool,
+        textures: &mut Textures,
+        warnings: &mut Vec<String>,
+    ) -> Physical {
+        let default = Physical::default();
+        let or_one = |number: Option<f32>, map: &MapDraft, default: f32| {
+            number.unwrap_or(if map.file().is_some() { 1.0 } else { default })
+        };
+        let maps = &self.maps;
+        let metal = if self.conductor.is_some() { 1.0 } else { default.metallic };
+        let white_if = |map: &MapDraft| if map.file().is_some() { Vec3::ONE } else { Vec3::ZERO };
+        let mut surface = Physical {
+            metallic: or_one(self.metallic, &maps.metallic, metal),
+            roughness: or_one(self.roughness, &maps.roughness, default.roughness),
+            anisotropy: or_one(self.anisotropy, &maps.anisotropy, default.anisotropy),
+            anisotropy_rotation: self.anisotropy_rotation.unwrap_or(default.anisotropy_rotation),
+            ior: self.ior.unwrap_or(default.ior),
+            specular: self.specular.unwrap_or(default.specular),
+            specular_color: self.specular_color.unwrap_or(default.specular_color),
+            conductor: self.conductor,
+            transmission: or_one(self.transmission, &maps.transmission, default.transmission),
+            attenuation_color: self.attenuation_color.unwrap_or(default.attenuation_color),
+            attenuation_distance: self.attenuation_distance.unwrap_or(default.attenuation_distance),
+            clearcoat: or_one(self.clearcoat, &maps.clearcoat, default.clearcoat),
+            clearcoat_roughness: or_one(
+                self.clearcoat_roughness,
+                &maps.clearcoat_roughness,
+                default.clearcoat_roughness,
+            ),
+            sheen_color: self.sheen_color.unwrap_or(white_if(&maps.sheen_color)),
+            sheen_roughness: or_one(self.sheen_roughness, &maps.sheen_roughness, default.sheen_roughness),
+            iridescence: or_one(self.iridescence, &maps.iridescence, default.iridescence),
+            iridescence_ior: self.iridescence_ior.unwrap_or(default.iridescence_ior),
+            iridescence_thickness: self.iridescence_thickness.unwrap_or(default.iridescence_thickness),
+            dispersion: self.dispersion.unwrap_or(default.dispersion),
+            ..default
+        };
+        if surface.ior == 0.0 && surface.transmission > 0.0 {
+            surface.transmission = 0.0;
+            warnings.push(format!(
+                "material `{name}`: `ior = 0` stands for a surface that only reflects, so that nothing is transmitted; give it an index of at least 1"
+            ));
+        }
+        self.warn_of_idle(name, thin, &surface, warnings);
+        surface.maps = self.load_maps(&surface, textures, warnings);
+        surface.sheen_color =
+            bounded(surface.sheen_color, surface.maps.sheen_color, "sheen colour", name, textures, warnings);
+        let missing = surface.not_modelled();
+        if !missing.is_empty() {
+            warnings.push(format!("material `{name}`: not modelled, ignored: {}", missing.join(", ")));
+        }
+        surface
+    }
+
+    /// Warns of what is stated and does nothing.
+    fn warn_of_idle(&self, name: &str, thin: bool, surface: &Physical, warnings: &mut Vec<String>) {
+        let metal = surface.metallic == 1.0 && self.maps.metallic.file().is_none();
+        let transmits = surface.transmission > 0.0 && !metal;
+        let film = self.iridescence_ior.is_some()
+            || self.iridescence_thickness.is_some()
+            || self.maps.iridescence_thickness.file().is_some();
+        let coat_roughness = self.clearcoat_roughness.is_some() || self.maps.clearcoat_roughness.file().is_some();
+        let sheen_roughness = self.sheen_roughness.is_some() || self.maps.sheen_roughness.file().is_some();
+        let depth = self.attenuation_distance.is_some() || self.attenuation_color.is_some();
+        let tinted = self.attenuation_color.is_some_and(|colour| colour != Vec3::ONE);
+        let idle = [
+            (surface.transmission > 0.0 && metal, "`transmission`", "where `metallic` is 1"),
+            (thin && !transmits, "`thin`", "without `transmission`"),
+            (depth && !transmits, "attenuation", "without `transmission`"),
+            (depth && transmits && thin, "attenuation", "where `thin` says that there is no inside"),
+            (tinted && self.attenuation_distance.is_none(), "`attenuation_colour`", "without `attenuation_distance`"),
+            (surface.dispersion > 0.0 && (!transmits || thin), "`dispersion`", "without a body that transmits"),
+            (surface.conductor.is_some() && surface.metallic == 0.0, "`conductor`", "where `metallic` is 0"),
+            (coat_roughness && surface.clearcoat == 0.0, "`clearcoat_roughness`", "without `clearcoat`"),
+            (sheen_roughness && surface.sheen_color == Vec3::ZERO, "`sheen_roughness`", "without `sheen_colour`"),
+            (film && surface.iridescence == 0.0, "the film of `iridescence`", "without `iridescence`"),
+            (
+                self.anisotropy_rotation.is_some() && surface.anisotropy == 0.0,
+                "`anisotropy_rotation`",
+                "without `anisotropy`",
+            ),
+        ];
+        for (_, key, why) in idle.iter().filter(|(idle, ..)| *idle) {
+            warnings.push(format!("material `{name}`: {key} does nothing {why}"));
+        }
+    }
+
+    /// Maps of numbers that are zero are not even looked for.
+    fn load_maps(&self, surface: &Physical, textures: &mut Textures, warnings: &mut Vec<String>) -> PhysicalMaps {
+        let maps = &self.maps;
+        let mut number = |map: &MapDraft, wanted: bool| -> Option<ChannelMap> {
+            textures.number(map.file().filter(|_| wanted)?, warnings)
+        };
+        let metallic = number(&maps.metallic, surface.metallic > 0.0);
+        let roughness = number(&maps.roughness, surface.roughness > 0.0);
+        let specular = number(&maps.specular, surface.specular > 0.0);
+        let transmission = number(&maps.transmission, surface.transmission > 0.0);
+        let clearcoat = number(&maps.clearcoat, surface.clearcoat > 0.0);
+        let clearcoat_roughness =
+            number(&maps.clearcoat_roughness, surface.clearcoat > 0.0 && surface.clearcoat_roughness > 0.0);
+        let has_sheen = surface.sheen_color != Vec3::ZERO;
+        let sheen_roughness = number(&maps.sheen_roughness, has_sheen && surface.sheen_roughness > 0.0);
+        let iridescence = number(&maps.iridescence, surface.iridescence > 0.0);
+        let iridescence_thickness = number(&maps.iridescence_thickness, surface.iridescence > 0.0);
+        let mut colour = |map: &MapDraft, colour: Vec3| -> Option<u32> {
+            let map: &MapFile = map.file().filter(|_| colour != Vec3::ZERO)?;
+            textures.optional(map, warnings)
+        };
+        let specular_color = colour(&maps.specular_color, surface.specular * surface.specular_color);
+        let sheen_color = colour(&maps.sheen_color, surface.sheen_color);
+        let anisotropy = maps.anisotropy.file().filter(|_| surface.anisotropy > 0.0);
+        PhysicalMaps {
+            base_color: None,
+            metallic,
+            roughness,
+            anisotropy: anisotropy.and_then(|map| textures.numbers(map, warnings)),
+            specular,
+            specular_color,
+            transmission,
+            clearcoat,
+            clearcoat_roughness,
+            sheen_color,
+            sheen_roughness,
+            iridescence,
+            iridescence_thickness,
+        }
+    }
+}
+
+/// A colour that exceeds 1 neither by itself nor anywhere on its map, which would create energy: it is scaled down, with a warning.
+pub(super) fn bounded(
+    colour: Vec3,
+    map: Option<u32>,
+    what: &str,
+    name: &str,
+    textures: &Textures,
+    warnings: &mut Vec<String>,
+) -> Vec3 {
+    let largest = map.map_or(Vec3::ONE, |map| textures.range(map).largest.max(Vec3::ONE));
+    let before = (colour * largest).max_element();
+    if before <= 1.0 {
+        return colour;
+    }
+    let mut factor = 1.0 / before;
+    while (colour * factor * largest).max_element() > 1.0 {
+        factor *= 1.0 - f32::EPSILON;
+    }
+    // Below that it is rounding.
+    if before > 1.000_01 {
+        warnings.push(format!(
+            "material `{name}` would create energy: its {what} reaches {before}; it is scaled by {factor:.4}"
+        ));
+    }
+    colour * factor
+}
