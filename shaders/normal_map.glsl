@@ -46,13 +46,26 @@ vec3 surface_gradient(vec3 ab, vec3 ac, float to_b, float to_c) {
     return none ? vec3(0.0) : gradient / max(1e-15 * largest(abs(gradient)), 1.0);
 }
 
+// What lies along the axes of an image, along tangent and bitangent: a transform of the texture coordinates may turn the image and mirror it.
+vec2 on_surface(uint map, vec2 v) {
+    if (!MAP_TRANSFORMS) return v;
+    Texture image = load_texture(map);
+    float side = image.u.x * image.v.y < image.u.y * image.v.x ? -1.0 : 1.0;
+    // The first column of the inverse, but for its length.
+    vec2 x = side * vec2(image.v.y, -image.v.x);
+    float size = largest(abs(vec3(x, 0.0)));
+    x = size > 0.0 ? normalize(x / size) : vec2(1.0, 0.0);
+    return v.x * x + v.y * side * vec2(-x.y, x.x);
+}
+
 // The outward shading normal n as the material's maps bend it, on a triangle with these edges.
 vec3 mapped_normal(Material material, uint triangle, vec3 ab, vec3 ac, vec2 uv, vec3 n, vec4 tangent) {
     vec3 bent = n;
     if (TANGENTS && material.normal_map != NONE && tangent.w != 0.0) {
         vec3 texel = 2.0 * texture_at(material.normal_map, uv).rgb - 1.0;
         vec3 bitangent = tangent.w * cross(n, tangent.xyz);
-        vec3 sum = material.normal_scale * (texel.x * tangent.xyz + texel.y * bitangent) + texel.z * n;
+        vec2 along = material.normal_scale * on_surface(material.normal_map, texel.xy);
+        vec3 sum = along.x * tangent.xyz + along.y * bitangent + texel.z * n;
         sum /= max(largest(abs(sum)) * 1e-15, 1.0);
         if (dot(sum, sum) > LEAST_SQUARE) bent = normalize(sum);
     }

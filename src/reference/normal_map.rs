@@ -3,7 +3,7 @@
 use super::prepared_scene::Reference;
 use super::texture::{bilinear, height_gradient};
 use crate::scene::{Material, Mesh, Triangle};
-use glam::{DVec2, DVec3, Vec4};
+use glam::{DMat2, DVec2, DVec3, Vec4};
 
 /// A direction on a surface: where u grows, and the sign by which `normal x tangent` becomes the bitangent.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -57,9 +57,11 @@ impl Reference {
     ) -> DVec3 {
         let mut bent = n;
         if let (Some(map), Some(tangent)) = (material.normal_map, tangent) {
-            let texel = 2.0 * bilinear(&self.scene.textures[map.texture as usize], uv).truncate() - 1.0;
-            let scale = f64::from(map.scale);
-            let sum = scale * (texel.x * tangent.direction + texel.y * tangent.bitangent(n)) + texel.z * n;
+            let texture = &self.scene.textures[map.texture as usize];
+            let texel = 2.0 * bilinear(texture, uv).truncate() - 1.0;
+            let [x, y] = image_axes(texture.transform.matrix2.as_dmat2());
+            let along = f64::from(map.scale) * (texel.x * x + texel.y * y);
+            let sum = along.x * tangent.direction + along.y * tangent.bitangent(n) + texel.z * n;
             if sum.length_squared() > LEAST_SQUARE {
                 bent = sum.normalize();
             }
@@ -72,6 +74,15 @@ impl Reference {
         }
         bent
     }
+}
+
+/// The axes of an image on a surface, along tangent and bitangent: where its columns grow, and what lies across that, towards its top. A transform of the texture
+/// coordinates may turn the image and mirror it.
+fn image_axes(transform: DMat2) -> [DVec2; 2] {
+    let side = if transform.determinant() < 0.0 { -1.0 } else { 1.0 };
+    // The first column of the inverse, but for its length.
+    let x = (side * DVec2::new(transform.y_axis.y, -transform.x_axis.y)).normalize_or(DVec2::X);
+    [x, side * x.perp()]
 }
 
 /// The gradient, within the plane of a triangle, of what grows by so much from its first corner to the second and to the third (Mikkelsen, "Surface Gradient Based

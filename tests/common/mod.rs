@@ -5,6 +5,7 @@ pub mod devices;
 pub mod directions;
 pub mod lamps;
 pub mod many_lamps;
+pub mod relief;
 pub mod scenes;
 pub mod stage;
 pub mod statistics;
