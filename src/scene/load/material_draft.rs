@@ -53,8 +53,8 @@ pub(super) struct Draft {
     pub normal_scale: Option<f32>,
     /// Length of a height of 1.
     pub bump_scale: Option<f32>,
-    /// Whether the map of heights may be one of normals, if it looks like one: MTL files have one word for both.
-    pub bump_or_normals: bool,
+    /// What the map of heights may be besides.
+    pub bump_word: BumpWord,
     /// The maps of all these.
     pub maps: DraftMaps,
     /// Warnings that many materials of a file may share: the file, and what is said of them.
@@ -69,6 +69,18 @@ pub(super) struct Draft {
     pub blinn_phong: Option<(&'static str, String)>,
     /// The same words of an MTL file as a surface of the other kind.
     pub otherwise: Option<Box<Draft>>,
+}
+
+/// Who names the map of heights.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) enum BumpWord {
+    /// A scene file, in which it is nothing else.
+    #[default]
+    Key,
+    /// An MTL file, whose word stands for normals, too: the image tells.
+    Mtl,
+    /// The same from Blender, which writes it of normals.
+    Blender,
 }
 
 /// The maps of a [`Draft`].
@@ -154,7 +166,7 @@ impl Draft {
         self.maps.normal.overlay(&other.maps.normal);
         if !matches!(other.maps.bump, MapDraft::Unstated) {
             // Whoever names a map by this key means what it says.
-            self.bump_or_normals = other.bump_or_normals;
+            self.bump_word = other.bump_word;
             self.maps.bump.overlay(&other.maps.bump);
         }
         self.maps.ambient.overlay(&other.maps.ambient);
@@ -260,7 +272,7 @@ impl Draft {
         }
         let scale = self.bump_scale.unwrap_or(1.0);
         let Some(map) = self.maps.bump.file().filter(|_| scale != 0.0) else { return };
-        match textures.relief(map, self.bump_or_normals, warnings) {
+        match textures.relief(map, self.bump_word != BumpWord::Key, warnings) {
             None => {}
             Some(Relief::Heights(texture)) => {
                 if textures.shows_normals(texture) {
@@ -280,11 +292,13 @@ impl Draft {
                 }
             }
             Some(Relief::Normals(texture)) => {
-                warnings.push(format!(
-                    "{}: material `{name}`: the image of map_Bump looks like a map of normals and is taken as one, -bm as its strength; `norm` in place \
-                     of map_Bump says so",
-                    map.at
-                ));
+                if self.bump_word == BumpWord::Mtl {
+                    warnings.push(format!(
+                        "{}: material `{name}`: the image of map_Bump looks like a map of normals and is taken as one, -bm as its strength; `norm` in \
+                         place of map_Bump says so",
+                        map.at
+                    ));
+                }
                 material.normal_map = Some(NormalMap { texture, scale });
             }
         }

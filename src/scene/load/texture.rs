@@ -290,6 +290,13 @@ impl Textures {
         if let Some(texture) = self.by_key.get(&key) {
             return *texture;
         }
+        // One that is there already as normals.
+        if let Kind::Heights { or_normals: true, .. } = kind
+            && let Some(Some(texture)) = self.by_key.get(&Key { kind: Kind::Normals, ..key.clone() })
+            && self.normals[*texture as usize]
+        {
+            return Some(*texture);
+        }
         let too_many = |texels| {
             format!(
                 "with its {texels} texels the textures of the scene would have more than {MOST_TEXELS}: make them smaller"

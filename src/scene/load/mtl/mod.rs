@@ -11,7 +11,7 @@ mod words;
 
 pub(super) use named_files::named_files;
 
-use super::material_draft::{Draft, ETAS, LARGEST_EXPONENT, MapDraft};
+use super::material_draft::{BumpWord, Draft, ETAS, LARGEST_EXPONENT, MapDraft};
 use super::text_file::{Tally, logical_lines, read_text, shortened};
 use crate::Result;
 use blender::Blender;
@@ -185,7 +185,8 @@ impl Reader<'_> {
                 match name.as_str() {
                     "map_bump" | "bump" => {
                         current.draft.bump_scale = statement.multiplier;
-                        current.draft.bump_or_normals = true;
+                        let blender = self.blender.is_some();
+                        current.draft.bump_word = if blender { BumpWord::Blender } else { BumpWord::Mtl };
                     }
                     "norm" | "map_kn" => current.draft.normal_scale = statement.multiplier,
                     _ => {}
