@@ -136,7 +136,7 @@ MUTATIONS = [
     ("reference: missing 1/pi", "src/reference/bsdf.rs",
      "self.lambert / PI", "self.lambert", [CLOSED_FORMS, REFERENCE]),
     ("another order in the kernel", "shaders/rng.glsl",
-     "seeds.zx ^ seeds.wy", "seeds.zy ^ seeds.wx", [KERNEL]),
+     "seeds.zx ^ seeds.wy", "seeds.xz ^ seeds.yw", [KERNEL]),
     ("groups that begin with the batch", "shaders/path_trace.comp",
      "uint start = (batch.first_sample / batch.group + id.z * GROUPS_IN_TURN) * batch.group;",
      "uint start = batch.first_sample + id.z * GROUPS_IN_TURN * batch.group;", [KERNEL]),

@@ -58,7 +58,7 @@ fn every_key_is_read() {
     let material = first_material(&scene);
     assert_eq!(material.physical.as_ref(), Some(&expected));
     assert_eq!((material.emission, material.opacity), (Vec3::new(1.0, 2.0, 3.0), 0.5));
-    assert_eq!((material.lambert, material.glossy, material.has_impulse()), (Vec3::ZERO, Vec3::ZERO, true));
+    assert_eq!((material.lambert, material.glossy, material.has_impulse()), (Vec3::ZERO, Vec3::ZERO, false));
     for (lines, expected) in [
         ("model = \"metallic-roughness\"\n", Physical::default()),
         ("base_colour = [0.8, 0.8, 0.8]\n", Physical::default()),

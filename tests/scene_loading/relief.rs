@@ -105,17 +105,18 @@ fn numbers_are_those_of_the_picture() {
         assert!((height(&scene, at) - expected).abs() < 1e-6, "{mtl}: {} for {expected}", height(&scene, at));
     }
     // Only differences of heights count, so that negative ones are none the worse.
-    let floats = |colours: &[[f32; 3]]| {
-        let bytes = colours.iter().flatten().flat_map(|channel| channel.to_le_bytes());
-        format!("PF\n{} 1\n-1.0\n", colours.len()).into_bytes().into_iter().chain(bytes).collect::<Vec<u8>>()
+    let load = |mtl: &str, colours: &[[f32; 3]]| {
+        let folder = textured(mtl);
+        let numbers = colours.concat();
+        luminaire::picture::save_linear(&folder.path("a.exr"), colours.len() as u32, 1, &numbers, 0.0).expect("an EXR");
+        folder.load("mesh.obj")
     };
-    let load = |mtl: &str, colours: &[[f32; 3]]| textured(mtl).with("a.pfm", floats(colours)).load("mesh.obj");
-    let scene = load("bump a.pfm", &[[-1.5; 3], [-0.5; 3], [0.5; 3]]);
+    let scene = load("bump a.exr", &[[-1.5; 3], [-0.5; 3], [0.5; 3]]);
     assert_eq!(scene.textures.len(), 1, "{:?}", scene.warnings);
     assert_eq!([0, 1, 2].map(|i| height(&scene, i)), [0.0, 1.0, 2.0]);
-    let signed = load("norm a.pfm", &[[-0.25, 0.5, 1.0]; 2]);
-    warned(&signed, &["mesh.mtl:2", "a.pfm", "2 of its 2 texels are outside of 0 to 1"]);
-    warned(&load("bump a.pfm", &[[f32::NAN; 3]]), &["mesh.mtl:2", "1 of its 1 texels are NaN"]);
+    let signed = load("norm a.exr", &[[-0.25, 0.5, 1.0]; 2]);
+    warned(&signed, &["mesh.mtl:2", "a.exr", "2 of its 2 texels are outside of 0 to 1"]);
+    warned(&load("bump a.exr", &[[f32::NAN; 3]]), &["mesh.mtl:2", "1 of its 1 texels are NaN"]);
 }
 
 /// One image that is a colour, normals and heights is three textures, and one that is the same twice is one.

@@ -13,7 +13,9 @@ use luminaire::scene::build::{add, empty, lamp, matte, quad};
 use luminaire::scene::{Estimator, Integrator, LightChoice, LuminaireTable, SampledLuminaire};
 use luminaire_measure::chart::{Chart, Series};
 use luminaire_measure::stability::Sweep;
-use luminaire_measure::stability::sweeps::{caustics, edge_on, glossy, glossy_caustics, luminaire as lamps, spot};
+use luminaire_measure::stability::sweeps::{
+    caustics, edge_on, glossy, glossy_caustics, grazing, luminaire as lamps, spot,
+};
 use std::f64::consts::TAU;
 
 fn chart<'a>(sweep: &'a Sweep, name: &str) -> &'a Chart {
@@ -57,6 +59,20 @@ fn glossy_plates() {
             assert!(roulette.y <= 1.1 * both.y, "{size} lamp, exponent {x:e}: {} with, {} without", roulette.y, both.y);
         }
     }
+}
+
+/// However flat one looks at bent normals, a mirror shows the whole sky, a diffuse plate what its lobe has above the surface, and no metal sends back more than
+/// it gets, or nothing.
+#[test]
+fn bent_normals_seen_at_grazing_angles() {
+    let sweep = grazing::sweep(&bench(), &[45.0, 1.0, 1e-2, 1e-4], 1 << 13).expect("the sweep runs");
+    let all: Vec<_> = chart(&sweep, "energy").series.iter().collect();
+    assert!(all.len() >= 9);
+    assert_all_found(&all, 2e-4, 0.02);
+    for series in &chart(&sweep, "albedo").series {
+        assert!(series.points.iter().all(|p| p.y > 0.3 && p.y < 1.0 + 4.0 * p.error.unwrap_or(0.0)), "{series:?}");
+    }
+    assert!(chart(&sweep, "noise").series.iter().all(|series| series.points.iter().all(|p| p.y < 2.0)));
 }
 
 /// Lambert's formula holds from a ten-thousandth of a lamp's side to a million of them, and the default estimator is never noisy; by area

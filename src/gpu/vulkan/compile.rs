@@ -22,6 +22,8 @@ pub(in crate::gpu) fn compile(name: &str) -> Result<Vec<u32>> {
     let compiler = shaderc::Compiler::new().map_err(|e| failed(e.to_string()))?;
     let mut options = shaderc::CompileOptions::new().map_err(|e| failed(e.to_string()))?;
     options.set_target_env(shaderc::TargetEnv::Vulkan, shaderc::EnvVersion::Vulkan1_2 as u32);
+    // As scripts/build-shaders.sh does.
+    options.set_optimization_level(shaderc::OptimizationLevel::Performance);
     if ray_query {
         options.add_macro_definition("RAY_QUERY", None);
     }

@@ -31,6 +31,7 @@ pub const SWEEPS: &[Definition] = &[
     sweeps::eta::DEFINITION,
     sweeps::touching_glass::DEFINITION,
     sweeps::glossy::DEFINITION,
+    sweeps::grazing::DEFINITION,
     sweeps::luminaire::DEFINITION,
     sweeps::edge_on::DEFINITION,
     sweeps::spot::DEFINITION,
