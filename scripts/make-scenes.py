@@ -288,10 +288,10 @@ def unfolded(face, points):
 
 
 class Obj:
-    """An OBJ file: parts, each a name, a material and a shape."""
+    """An OBJ file: parts, each a name, a material and a shape; with texture coordinates if it names a library or is `mapped`."""
 
-    def __init__(self, comment, library=None):
-        self.comment, self.library, self.parts = comment, library, []
+    def __init__(self, comment, library=None, mapped=False):
+        self.comment, self.library, self.mapped, self.parts = comment, library, mapped or library is not None, []
 
     def part(self, name, material, shape):
         self.parts.append((name, material, shape))
@@ -305,7 +305,7 @@ class Obj:
         for name, material, shape in self.parts:
             lines += ["", f"o {name}"]
             lines += ["v " + " ".join(number(x) for x in p) for p in shape.points]
-            uvs = shape.uvs if self.library else None
+            uvs = shape.uvs if self.mapped else None
             if uvs:
                 lines += ["vt " + " ".join(number(x) for x in uv) for uv in uvs]
             lines += [f"usemtl {material}"] if material else []
@@ -815,9 +815,9 @@ def brick_wall(out):
         height.append(line)
     write_png(folder / "star-normals.png", size, size, normals(size, height))
 
-    alley = Obj("A brick wall, cobbles, a plate on the wall, and two lamps that graze it.")
-    alley.part("wall", "bricks", quad((-3, 0, 0), (3, 0, 0), (3, 3.2, 0), (-3, 3.2, 0), (3, 1.6)))
-    alley.part("ground", "cobbles", quad((-3, 0, 4), (3, 0, 4), (3, 0, 0), (-3, 0, 0), (3, 2)))
+    alley = Obj("A brick wall, cobbles, a plate on the wall, and two lamps that graze it.", mapped=True)
+    alley.part("wall", "bricks", quad((-4, 0, 0), (4, 0, 0), (4, 4, 0), (-4, 4, 0), (4, 2)))
+    alley.part("ground", "cobbles", quad((-4, 0, 4), (4, 0, 4), (4, 0, 0), (-4, 0, 0), (4, 2)))
     alley.part("plate", "plate", quad((0.15, 1.15, 0.04), (1.05, 1.15, 0.04), (1.05, 2.05, 0.04), (0.15, 2.05, 0.04)))
     alley.part("edge", "iron", box((0.13, 1.13, 0), (1.07, 2.07, 0.039)))
     alley.part("lamp", "warm", geodesic(4).scale(0.09).move(-1.35, 2.35, 0.3))
