@@ -70,7 +70,10 @@ fn bent_normals_seen_at_grazing_angles() {
     assert!(all.len() >= 9);
     assert_all_found(&all, 2e-4, 0.02);
     for series in &chart(&sweep, "albedo").series {
-        assert!(series.points.iter().all(|p| p.y > 0.3 && p.y < 1.0 + 1e-5 + 4.0 * p.error.unwrap_or(0.0)), "{series:?}");
+        assert!(
+            series.points.iter().all(|p| p.y > 0.3 && p.y < 1.0 + 1e-5 + 4.0 * p.error.unwrap_or(0.0)),
+            "{series:?}"
+        );
     }
     assert!(chart(&sweep, "noise").series.iter().all(|series| series.points.iter().all(|p| p.y < 2.0)));
 }
