@@ -187,8 +187,8 @@ pub fn planes() -> (Scene, Vec<(String, f64)>) {
         ("stronger normal", Relief::Tilt(Vec3::new(0.125, -0.25, 0.9), 1.5)),
         ("ramp", Relief::Ramp(Vec2::new(0.25, -0.5), 0.75)),
     ];
-    let mut add = |which: [(&str, usize); 3], relief: &(&str, Relief), behind| {
-        let [(of_uv, uv), (of_map, map), (of_place, place)] = which;
+    let mut add = |[uv, map, place]: [usize; 3], relief: &(&str, Relief), behind| {
+        let (of_uv, of_map, of_place) = (coordinates[uv].0, maps[map].0, places[place].0);
         let name = format!("{}, coordinates {of_uv}, map {of_map}, plane {of_place}, behind {behind}", relief.0);
         let radiance =
             plane(&mut scene, &name, coordinates[uv].1, (maps[map].1, maps[map].2), places[place].1, &relief.1, behind);
@@ -196,16 +196,16 @@ pub fn planes() -> (Scene, Vec<(String, f64)>) {
     };
     for relief in &reliefs {
         for i in 0..coordinates.len() {
-            add([(coordinates[i].0, i), (maps[0].0, 0), (places[0].0, 0)], relief, false);
+            add([i, 0, 0], relief, false);
         }
         for i in 1..maps.len() {
-            add([(coordinates[0].0, 0), (maps[i].0, i), (places[0].0, 0)], relief, false);
+            add([0, i, 0], relief, false);
         }
         for i in 1..places.len() {
-            add([(coordinates[0].0, 0), (maps[0].0, 0), (places[i].0, i)], relief, false);
+            add([0, 0, i], relief, false);
         }
-        add([(coordinates[4].0, 4), (maps[2].0, 2), (places[4].0, 4)], relief, false);
-        add([(coordinates[4].0, 4), (maps[1].0, 1), (places[1].0, 1)], relief, true);
+        add([4, 2, 4], relief, false);
+        add([4, 1, 1], relief, true);
     }
     // As if turned by a quarter; the coordinates are not.
     let (name, quarter) = ("tangents that are given", Mat2::from_angle(-std::f32::consts::FRAC_PI_2));

@@ -283,15 +283,7 @@ impl Draft {
                 }
                 material.bump_map = Some(BumpMap { texture, scale });
             }
-            Some(Relief::Normals(_)) if material.normal_map.is_some() => {
-                if !self.maps.normal.file().is_some_and(|normals| normals.is_same_file(map)) {
-                    warnings.push(format!(
-                        "{}: material `{name}`: map_Bump holds normals too, of which `norm` counts",
-                        map.at
-                    ));
-                }
-            }
-            Some(Relief::Normals(texture)) => {
+            Some(Relief::Normals(texture)) if material.normal_map.is_none() => {
                 if self.bump_word == BumpWord::Mtl {
                     warnings.push(format!(
                         "{}: material `{name}`: the image of map_Bump looks like a map of normals and is taken as one, -bm as its strength; `norm` in \
@@ -301,6 +293,9 @@ impl Draft {
                 }
                 material.normal_map = Some(NormalMap { texture, scale });
             }
+            Some(Relief::Normals(_)) if self.maps.normal.file().is_some_and(|normals| normals.is_same_file(map)) => {}
+            Some(Relief::Normals(_)) => warnings
+                .push(format!("{}: material `{name}`: map_Bump holds normals too, of which `norm` counts", map.at)),
         }
     }
 
