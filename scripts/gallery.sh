@@ -31,6 +31,7 @@ glass                  glass/glass.toml              640 448
 lens                   lens/lens.toml                640 192
 orthographic           lens/orthographic.toml        640 96
 textures               textures/textures.toml        640 160
+brick-wall             brick-wall/brick-wall.toml    640 384
 environment            environment/environment.toml  640 256
 metals                 metals/metals.toml            640 128
 brushed                brushed/brushed.toml          640 128

@@ -328,11 +328,10 @@ def unfolded(face, points):
 
 
 class Obj:
-    """An OBJ file: parts, each a name, a material and a shape."""
+    """An OBJ file: parts, each a name, a material and a shape; with texture coordinates if it names a library or is `mapped`."""
 
-    def __init__(self, comment, library=None, textured=False):
-        self.comment, self.library, self.parts = comment, library, []
-        self.textured = textured or library is not None
+    def __init__(self, comment, library=None, mapped=False):
+        self.comment, self.library, self.mapped, self.parts = comment, library, mapped or library is not None, []
 
     def part(self, name, material, shape):
         self.parts.append((name, material, shape))
@@ -346,7 +345,7 @@ class Obj:
         for name, material, shape in self.parts:
             lines += ["", f"o {name}"]
             lines += ["v " + " ".join(number(x) for x in p) for p in shape.points]
-            uvs = shape.uvs if self.textured else None
+            uvs = shape.uvs if self.mapped else None
             if uvs:
                 lines += ["vt " + " ".join(number(x) for x in uv) for uv in uvs]
             lines += [f"usemtl {material}"] if material else []
@@ -567,6 +566,14 @@ def lens(out):
     table.write(out / "lens" / "table.obj")
 
 
+def brick(f, size, rows, columns, x, y):
+    """Of a texel of a wall of bricks: the row, the place along it in bricks, and how far it is from the brick's edge, in texels, with chips."""
+    row = y * rows // size
+    bx = (x * columns / size + 0.5 * (row % 2)) % columns
+    u, v = bx % 1 * size / columns, y * rows / size % 1 * size / rows
+    return row, bx, min(u, size / columns - u, v, size / rows - v) + 2.5 * (f(x / 6, y / 6, 43) - 0.5)
+
+
 def textures(out):
     folder = out / "textures"
     folder.mkdir(parents=True, exist_ok=True)
@@ -577,10 +584,7 @@ def textures(out):
     pixels = []
     for y in range(size):
         for x in range(size):
-            row = y * rows // size
-            bx = (x * columns / size + 0.5 * (row % 2)) % columns
-            u, v = bx % 1 * size / columns, y * rows / size % 1 * size / rows
-            edge = min(u, size / columns - u, v, size / rows - v) + 2.5 * (f(x / 6, y / 6, 43) - 0.5)
+            row, bx, edge = brick(f, size, rows, columns, x, y)
             grain = 0.86 + 0.22 * f(x / 2, y / 2, 128) + 0.12 * f(x / 16, y / 16, 16)
             if edge < 2:
                 pixels.append(tuple(byte(c * grain) for c in (168, 160, 148)))
@@ -855,14 +859,14 @@ def brushed(out):
     stage.write(out / "brushed" / "stage.obj", smooth=("table",))
     bevel = 0.03
     pot = [(0, 0.002), (0.98, 0.002), (1.0, bevel), (1.0, 1.02), (0.985, 1.04), (0.96, 1.04), (0.95, 1.02), (0.95, 0.1), (0, 0.1)]
-    pan = Obj("A pot that was turned on a lathe, 1.04 high: u goes around its axis, along the grooves.", textured=True)
+    pan = Obj("A pot that was turned on a lathe, 1.04 high: u goes around its axis, along the grooves.", mapped=True)
     pan.part("pot", None, turned(pot, 120))
     pan.write(out / "brushed" / "pot.obj")
     lid = [(0, 0), (1.02, 0), (1.04, 0.02), (1.02, 0.05)] + [(r, 0.05 + 0.16 * (1 - (r / 1.02) ** 2)) for r in (0.9, 0.75, 0.6, 0.45, 0.3, 0.2, 0.12, 0.05, 0)]
-    cover = Obj("Its lid, turned, too, around +y.", textured=True)
+    cover = Obj("Its lid, turned, too, around +y.", mapped=True)
     cover.part("lid", None, turned(lid, 120))
     cover.write(out / "brushed" / "lid.obj")
-    board = Obj("A plate that was brushed in straight lines along u, which is its x axis: 2.4 x 1.2, standing.", textured=True)
+    board = Obj("A plate that was brushed in straight lines along u, which is its x axis: 2.4 x 1.2, standing.", mapped=True)
     w, h, t = 1.2, 1.2, 0.05
     board.part("plate", None, quad((-w, 0, t), (w, 0, t), (w, h, t), (-w, h, t)))
     board.part("sides", None, Shape([(w, 0, t), (w, 0, -t), (w, h, -t), (w, h, t), (-w, h, t), (-w, h, -t), (-w, 0, -t), (-w, 0, t)],
@@ -895,11 +899,91 @@ def car_paint(out):
     car.write(folder / "car.obj", smooth=("body", "cabin", "roof", "wheels", "hubs", "eyes", "bumpers"))
 
 
+def normals(size, height):
+    """A map of the normals of heights in texels, which repeat; green is up."""
+    pixels = []
+    for y in range(size):
+        for x in range(size):
+            across = (height[y][(x + 1) % size] - height[y][x - 1]) / 2
+            upwards = (height[y - 1][x] - height[(y + 1) % size][x]) / 2
+            pixels.append(tuple(byte(127.5 + 127.5 * c) for c in unit((-across, -upwards, 1))))
+    return pixels
+
+
+def step(x, low, high):
+    """From 0 at `low` to 1 at `high`, smoothly."""
+    t = max(0, min(1, (x - low) / (high - low)))
+    return t * t * (3 - 2 * t)
+
+
+def brick_wall(out):
+    folder = out / "brick-wall"
+    folder.mkdir(parents=True, exist_ok=True)
+    f = noise(1)
+    # The normals of textures/bricks.png: the same bricks, each a little askew, with rounded edges and a rough face; the mortar lies deeper.
+    size, rows, columns, rng = 256, 8, 4, random.Random(3)
+    lean = [[(rng.uniform(-0.05, 0.05), rng.uniform(-0.1, 0.1), rng.uniform(0, 0.8)) for _ in range(columns)] for _ in range(rows)]
+    height = []
+    for y in range(size):
+        line = []
+        for x in range(size):
+            row, bx, edge = brick(f, size, rows, columns, x, y)
+            right, down, out_of = lean[row][int(bx)]
+            face = 3.4 + out_of + right * (bx % 1 - 0.5) * size / columns + down * (y % (size // rows) - 16)
+            rough = 0.9 * f(x / 5, y / 5, 51) + 0.5 * f(x / 2, y / 2, 128)
+            line.append(face * step(edge, 0.5, 4.5) + rough)
+        height.append(line)
+    write_png(folder / "bricks-normals.png", size, size, normals(size, height))
+    # Heights of cobbles: round stones around points that repeat, sand between them.
+    size, rng = 128, random.Random(5)
+    seeds = [((i + rng.uniform(0.2, 0.8)) * size / 7, (j + rng.uniform(0.2, 0.8)) * size / 7) for i in range(7) for j in range(7)]
+    around = [(x + dx, y + dy) for x, y in seeds for dx in (-size, 0, size) for dy in (-size, 0, size)]
+    pixels = []
+    for y in range(size):
+        for x in range(size):
+            first, second = sorted(math.hypot(x - a, y - b) for a, b in around)[:2]
+            stone = math.sqrt(step(second - first, 0.5, 11)) * (1 - 0.012 * first)
+            pixels.append(byte(30 + 205 * stone + 20 * f(x / 2, y / 2, 64)))
+    write_png(folder / "cobbles.png", size, size, pixels)
+    # A plate of metal: a bevelled rim, four rivets, and a star with ridges.
+    size, height = 192, []
+    for y in range(size):
+        line = []
+        for x in range(size):
+            u, v = 2 * (x + 0.5) / size - 1, 1 - 2 * (y + 0.5) / size
+            rim = 1 - max(abs(u), abs(v))
+            h = 5 * step(rim, 0.0, 0.05) - 3 * step(rim, 0.1, 0.16)
+            corner = math.hypot(abs(u) - 0.74, abs(v) - 0.74)
+            h += 5 * math.sqrt(max(0, 1 - (corner / 0.075) ** 2))
+            angle, radius = math.atan2(u, v), math.hypot(u, v)
+            turn = abs((angle * 5 / TAU + 0.5) % 1 - 0.5) * TAU / 5
+            # How far inside the edge from a tip to the notch beside it; the ridge runs from tip to middle.
+            tip, notch = (0.66, 0), (0.27 * math.cos(TAU / 10), 0.27 * math.sin(TAU / 10))
+            px, py = radius * math.cos(turn), radius * math.sin(turn)
+            ex, ey = notch[0] - tip[0], notch[1] - tip[1]
+            inside = (ey * (px - tip[0]) - ex * (py - tip[1])) / math.hypot(ex, ey)
+            h += 60 * max(0, min(inside, 0.2))
+            line.append(h)
+        height.append(line)
+    write_png(folder / "star-normals.png", size, size, normals(size, height))
+
+    alley = Obj("A brick wall, cobbles, a plate on the wall, and two lamps that graze it.", mapped=True)
+    alley.part("wall", "bricks", quad((-4, 0, 0), (4, 0, 0), (4, 4, 0), (-4, 4, 0), (4, 2)))
+    alley.part("ground", "cobbles", quad((-4, 0, 4), (4, 0, 4), (4, 0, 0), (-4, 0, 0), (4, 2)))
+    alley.part("plate", "plate", quad((0.15, 1.15, 0.04), (1.05, 1.15, 0.04), (1.05, 2.05, 0.04), (0.15, 2.05, 0.04)))
+    alley.part("edge", "iron", box((0.13, 1.13, 0), (1.07, 2.07, 0.039)))
+    alley.part("lamp", "warm", geodesic(4).scale(0.09).move(-1.35, 2.35, 0.3))
+    alley.part("bracket", "iron", join([box((-1.375, 2.46, 0), (-1.325, 2.5, 0.32)), box((-1.36, 2.42, 0.28), (-1.34, 2.48, 0.32))]))
+    alley.part("second", "cool", geodesic(4).scale(0.07).move(2.15, 0.5, 0.25))
+    alley.part("foot", "iron", box((2.1, 0, 0.2), (2.2, 0.42, 0.3)))
+    alley.write(folder / "alley.obj")
+
+
 def main():
     here = Path(__file__).resolve().parent.parent
     out = Path(sys.argv[1]) if len(sys.argv) > 1 else here / "scenes"
     for make in (shapes, shadows, directions, extinction, lamps, mirror, glass, lens, textures, environment, many_lights, plates, spotlights,
-                 metals, frosted, liquid, brushed, car_paint):
+                 metals, frosted, liquid, brushed, car_paint, brick_wall):
         make(out)
 
 

@@ -12,6 +12,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "warp.glsl"
 #include "texture.glsl"
 #include "intersect.glsl"
+#include "normal_map.glsl"
 #include "fresnel.glsl"
 #include "microfacet.glsl"
 #include "physical.glsl"
@@ -59,7 +60,7 @@ void main() {
             if (IMPULSES) albedo += max(material.reflection, DIELECTRICS ? material.transmission : vec3(0.0));
         }
         normal += s.shading_normal;
-        depth += dot(s.position - frame.position.xyz, frame.axis.xyz) + frame.start;
+        depth += dot((SMOOTH_TERMINATOR ? s.position - s.lift : s.position) - frame.position.xyz, frame.axis.xyz) + frame.start;
         hits++;
     }
     aovs[id.y * batch.tile_width + id.x] =

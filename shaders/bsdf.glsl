@@ -24,16 +24,17 @@ void coat(Surfel s, Material material, vec3 wo, vec3 wi, out vec3 lambert, out v
 // Of a metallic-roughness surface without the factor 1 / eta^2 of what is refracted (`dilution`).
 vec4 bsdf_and_pdf(Surfel s, Material material, vec3 wo, vec3 wi) {
     float cosine = dot(s.shading_normal, wi);
+    float height = dot(SMOOTH_TERMINATOR ? s.horizon : s.geometric_normal, wi);
     if (is_physical(material)) {
         bool both = scatters_through(s.lobes);
-        if (dot(s.geometric_normal, wi) * cosine <= 0.0 || (!both && cosine < 0.0)) return vec4(0.0);
+        if (height * cosine <= 0.0 || (!both && cosine < 0.0)) return vec4(0.0);
         vec4 f = physical_value_and_pdf(s.lobes, vec3(dot(s.lobes.x, wi), dot(s.lobes.y, wi), cosine));
         float sides = both ? 0.5 : 1.0;
         if (DIRECTIONS == DIRECTIONS_UNIFORM) f.w = sides * (0.5 / PI);
         if (DIRECTIONS == DIRECTIONS_COSINE) f.w = sides * abs(cosine) * (1.0 / PI);
         return f;
     }
-    if (dot(s.geometric_normal, wi) <= 0.0 || cosine <= 0.0) return vec4(0.0);
+    if (height <= 0.0 || cosine <= 0.0) return vec4(0.0);
     vec3 f = material.lambert * (1.0 / PI);
     vec3 glossy = material.glossy;
     if (is_coated(material)) {

@@ -25,10 +25,10 @@ Impulses impulses(Surfel s, Material material, vec3 wo) {
         vec3 transmitted = clear ? refract_direction(wo, i.normal, i.eta) : vec3(0.0);
         bool wrong = dot(reflect_direction(wo, i.normal), s.geometric_normal) <= 0.0;
         if (clear) wrong = wrong || dot(transmitted, s.geometric_normal) >= 0.0;
-        if (VERTEX_NORMALS && wrong) {
+        if ((VERTEX_NORMALS || NORMAL_MAPS) && wrong) {
             i.normal = s.geometric_normal;
             if (clear) {
-                l = physical_lobes(l.p, i.normal, s.tangent, s.front, wo);
+                l = physical_lobes(l.p, i.normal, s.tangent.xyz, s.front, wo);
                 transmitted = refract_direction(wo, i.normal, i.eta);
             }
         }
@@ -54,7 +54,7 @@ Impulses impulses(Surfel s, Material material, vec3 wo) {
     }
     // A direction on the wrong side of the triangle, or all reflected by glass: the triangle's own normal instead. Total reflection about
     // interpolated normals would keep paths for ever (src/reference/impulse.rs).
-    if (VERTEX_NORMALS) {
+    if (VERTEX_NORMALS || NORMAL_MAPS) {
         bool wrong = dot(reflect_direction(wo, i.normal), s.geometric_normal) <= 0.0;
         if (DIELECTRICS && !opaque) wrong = wrong || dot(refract_direction(wo, i.normal, i.eta), s.geometric_normal) >= 0.0;
         if (wrong) i.normal = s.geometric_normal;

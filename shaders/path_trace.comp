@@ -12,6 +12,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "warp.glsl"
 #include "texture.glsl"
 #include "intersect.glsl"
+#include "normal_map.glsl"
 #include "fresnel.glsl"
 #include "microfacet.glsl"
 #include "physical.glsl"

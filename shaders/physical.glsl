@@ -130,6 +130,13 @@ bool is_smooth(Physical p) { return widths(p).x < LEAST_ALPHA; }
 
 float transmits(Physical p) { return !ROUGH_TRANSMISSION || p.ior == 0.0 ? 0.0 : p.transmission; }
 
+// Whether light goes through the surface, as far as its own numbers say (`Material::transmits`).
+bool lets_light_through(Material material) {
+    if (!is_physical(material)) return DIELECTRICS && material.eta != MIRROR && material.transmission != vec3(0.0);
+    Physical p = load_physical(material.kind >> 1u);
+    return p.transmission > 0.0 && p.metallic < 1.0 && p.ior != 0.0;
+}
+
 // Whether anything is scattered in other ways than by impulses.
 bool scatters(Physical p) {
     if (!is_smooth(p) || (1.0 - p.metallic) * (1.0 - transmits(p)) * p.base != vec3(0.0)) return true;

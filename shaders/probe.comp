@@ -12,6 +12,7 @@ layout(local_size_x = 64) in;
 #include "warp.glsl"
 #include "texture.glsl"
 #include "intersect.glsl"
+#include "normal_map.glsl"
 #include "fresnel.glsl"
 #include "microfacet.glsl"
 #include "physical.glsl"
@@ -84,7 +85,8 @@ Surfel upward(uint material) {
     s.front = (material & INSIDE) == 0u;
     s.uv = vec2(0.0);
     s.colour = vec3(1.0);
-    s.tangent = vec3(1.0, 0.0, 0.0);
+    s.tangent = vec4(1.0, 0.0, 0.0, 1.0);
+    s.horizon = vec3(0.0, 0.0, 1.0);
     return s;
 }
 

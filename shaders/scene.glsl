@@ -27,18 +27,21 @@ layout(constant_id = 22) const bool ROUGH_TRANSMISSION = true; // some of these 
 layout(constant_id = 23) const bool VOLUMES = true;            // some of these are bodies that absorb
 layout(constant_id = 24) const bool CLEARCOATS = true;         // some of these have a coat
 layout(constant_id = 25) const bool ANISOTROPY = true;         // some of these are brushed
-layout(constant_id = 26) const bool ORTHOGRAPHIC = false;
-layout(constant_id = 27) const bool SOBOL = false;
+layout(constant_id = 26) const bool TANGENTS = true;           // some material needs to know where the texture's u grows
+layout(constant_id = 27) const bool NORMAL_MAPS = true;        // some material has a map that bends the shading normal
+layout(constant_id = 28) const bool ORTHOGRAPHIC = false;
+layout(constant_id = 29) const bool SOBOL = false;
 
 // The integrator's choices (src/scene/estimator.rs).
-layout(constant_id = 28) const bool SIMPLE = false;            // the simple ray tracer instead of the path tracer
-layout(constant_id = 29) const uint LIGHT_SAMPLING = 2u;
-layout(constant_id = 30) const bool SOLID_ANGLE = true;        // near triangles are sampled by solid angle
-layout(constant_id = 31) const uint DIRECTIONS = 2u;
-layout(constant_id = 32) const uint EXTINCTION = 3u;
-layout(constant_id = 33) const bool THRESHOLD = false;         // paths of small albedo end
+layout(constant_id = 30) const bool SIMPLE = false;            // the simple ray tracer instead of the path tracer
+layout(constant_id = 31) const uint LIGHT_SAMPLING = 2u;
+layout(constant_id = 32) const bool SOLID_ANGLE = true;        // near triangles are sampled by solid angle
+layout(constant_id = 33) const uint DIRECTIONS = 2u;
+layout(constant_id = 34) const uint EXTINCTION = 3u;
+layout(constant_id = 35) const bool THRESHOLD = false;         // paths of small albedo end
 
-layout(constant_id = 34) const bool TRANSPARENT = false;       // the camera does not see where its rays escape to, and they are counted
+layout(constant_id = 36) const bool TRANSPARENT = false;       // the camera does not see where its rays escape to, and they are counted
+layout(constant_id = 37) const bool SMOOTH_TERMINATOR = false; // rays leave from above the triangles of smooth meshes
 
 const uint LIGHT_NONE = 0u;
 const uint LIGHT_DIRECT = 1u;
@@ -117,6 +120,10 @@ struct Material {
     uint one_sided;               // 1 if only the outward side emits
     uint kind;                    // 1 if it is a sheet whose two sides are one surface, plus twice its texel in `physical`, if it has one there
     float coat_transmittance;     // where COATS: of even light from outside, what reaches the base
+    uint normal_map;              // textures that bend the shading normal, or NONE
+    float normal_scale;           // factor to what lies along the surface
+    uint bump_map;
+    float bump_scale;             // world length of a height of 1
 };
 // What impulse_probability is where the albedos say how probable an impulse is.
 const float BY_ALBEDOS = -1.0;
@@ -164,11 +171,15 @@ layout(set = 0, binding = 13) uniform usamplerBuffer environment_choice;
 // Vertex colours, three texels a triangle, where VERTEX_COLOURS.
 layout(set = 0, binding = 14) uniform usamplerBuffer colours;
 
+
 // The light tree (src/gpu/pack/light_tree.rs): a header, what is chosen beside the tree, nodes, paths.
 layout(set = 0, binding = 15) uniform usamplerBuffer light_tree;
 
 // Metallic-roughness surfaces and their tables (src/gpu/pack/physical.rs), where PHYSICAL.
 layout(set = 0, binding = 16) uniform usamplerBuffer physical;
+
+// Tangents of the corners with their handedness, three texels a triangle, where TANGENTS.
+layout(set = 0, binding = 17) uniform usamplerBuffer tangents;
 
 // No index.
 const uint NONE = 0xffffffffu;
@@ -178,7 +189,7 @@ const uint INFINITY_BITS = 0x7f800000u;
 // Sizes of the structures that are read as texels.
 const int TRIANGLE_TEXELS = 3;
 const int OBJECT_TEXELS = 8;
-const int MATERIAL_TEXELS = 8;
+const int MATERIAL_TEXELS = 9;
 const int LUMINAIRE_TEXELS = 7;
 const int TEXTURE_TEXELS = 3;
 const int LIGHT_TREE_HEADER = 2;
@@ -246,9 +257,10 @@ Material load_material(uint index) {
     vec4 transmission = uintBitsToFloat(texelFetch(materials, base + 5));
     uvec4 maps = texelFetch(materials, base + 6);
     uvec4 last = texelFetch(materials, base + 7);
+    uvec4 bent = texelFetch(materials, base + 8);
     return Material(ambient.rgb, ambient.w, lambert.rgb, lambert.w, glossy.rgb, glossy.w, emission.rgb, emission.w,
                     reflection.rgb, reflection.w, transmission.rgb, transmission.w, maps.x, maps.y, maps.z, maps.w, last.x, last.y, last.z,
-                    uintBitsToFloat(last.w));
+                    uintBitsToFloat(last.w), bent.x, uintBitsToFloat(bent.y), bent.z, uintBitsToFloat(bent.w));
 }
 
 Luminaire load_luminaire(uint index) {

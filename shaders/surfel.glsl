@@ -9,7 +9,9 @@ struct Surfel {
     bool front;               // wo is on the outward side
     vec2 uv;                  // where TEXTURES
     vec3 colour;              // of the vertices, where VERTEX_COLOURS
-    vec3 tangent;             // in which the first texture coordinate grows, where ANISOTROPY
+    vec4 tangent;             // where TANGENTS: where u grows, beside the shading normal, and the handedness; zero where there is none
+    vec3 horizon;             // where SMOOTH_TERMINATOR: the normal of the plane that parts above from below
+    vec3 lift;                // where SMOOTH_TERMINATOR: by how much `position` was moved off the triangle
     Lobes lobes;              // towards wo, where PHYSICAL and the material is such a surface
 };
 
@@ -40,12 +42,27 @@ vec3 vertex_colour(uint triangle, vec2 barycentric) {
     return (1.0 - barycentric.x - barycentric.y) * a + barycentric.x * b + barycentric.y * c;
 }
 
-// The direction in the plane of a triangle with these edges in which the first texture coordinate grows; 0 if there is none.
-vec3 direction_of_u(uint triangle, vec3 ab, vec3 ac) {
-    vec4 corners = uintBitsToFloat(texelFetch(uvs, int(2u * triangle)));
-    vec2 b = corners.zw - corners.xy;
-    vec2 c = uintBitsToFloat(texelFetch(uvs, int(2u * triangle + 1u)).xy) - corners.xy;
-    return (ab * c.y - ac * b.y) * sign(b.x * c.y - b.y * c.x);
+// How far a point of a triangle is below the surface that its vertex normals mean, on the side of `side` (src/reference/surfel.rs).
+vec3 terminator_lift(Hit hit, vec3 p, vec3 side) {
+    Triangle triangle = load_triangle(hit.triangle);
+    vec3 corners[3] = vec3[3](triangle.a, triangle.b, triangle.c);
+    vec3 weights = vec3(1.0 - hit.barycentric.x - hit.barycentric.y, hit.barycentric);
+    vec3 lift = vec3(0.0);
+    for (int i = 0; i < 3; i++) {
+        vec3 n = uintBitsToFloat(texelFetch(normals, int(hit.triangle) * TRIANGLE_TEXELS + i).xyz);
+        vec3 corner = corners[i];
+        if (INSTANCES) {
+            vec4 to_world[3], to_object[3];
+            object_to_world(hit.object, to_world);
+            world_to_object(hit.object, to_object);
+            corner = row_dot(to_world, corner) + translation(to_world);
+            n = normal_to_world(to_object, n);
+        }
+        n = normalize(n / largest(abs(n)));
+        if (dot(n, side) < 0.0) n = -n;
+        lift += weights[i] * max(dot(corner - p, n), 0.0) * n;
+    }
+    return lift;
 }
 
 Surfel surfel(Hit hit, vec3 wo) {
@@ -75,7 +92,6 @@ Surfel surfel(Hit hit, vec3 wo) {
     s.material = triangle.material;
     if (TEXTURES) s.uv = texture_coordinates(hit.triangle, w);
     if (VERTEX_COLOURS) s.colour = vertex_colour(hit.triangle, w);
-    if (ANISOTROPY) s.tangent = direction_of_u(hit.triangle, b - a, c - a);
 
     vec3 n = vec3(0.0);
     if (VERTEX_NORMALS) {
@@ -113,7 +129,6 @@ Surfel surfel(Hit hit, vec3 wo) {
         s.position_error = across / dot(scaled, scaled) * abs(scaled)
             + gamma(TO_WORLD_ROUNDINGS) * (row_abs_dot(to_world, abs(p)) + abs(translation(to_world)));
         if (VERTEX_NORMALS) n = normal_to_world(to_object, n);
-        if (ANISOTROPY) s.tangent = row_dot(to_world, s.tangent);
         uint material = object_place(hit.object).material;
         if (material != NONE) s.material = material;
     }
@@ -129,6 +144,38 @@ Surfel surfel(Hit hit, vec3 wo) {
         // A shading normal that faces away from the viewer says nothing useful.
         if (dot(n, wo) > 0.0) s.shading_normal = n;
     }
+    if (SMOOTH_TERMINATOR) {
+        s.horizon = s.geometric_normal;
+        s.lift = vec3(0.0);
+        // What lets light through has no side from which alone it is lit.
+        if (s.shading_normal != s.geometric_normal && !lets_light_through(load_material(s.material))) {
+            s.horizon = s.shading_normal;
+            s.lift = terminator_lift(hit, s.position, s.shading_normal);
+            s.position += s.lift;
+        }
+    }
+    if (TANGENTS || NORMAL_MAPS) {
+        vec3 outward_normal = s.front ? s.shading_normal : -s.shading_normal;
+        s.tangent = TANGENTS ? tangent_at(hit, outward_normal) : vec4(0.0);
+        Material material;
+        if (NORMAL_MAPS) material = load_material(s.material);
+        if (NORMAL_MAPS && (material.normal_map != NONE || material.bump_map != NONE)) {
+            vec3 ab = b - a;
+            vec3 ac = c - a;
+            if (INSTANCES) {
+                vec4 to_world[3];
+                object_to_world(hit.object, to_world);
+                ab = row_dot(to_world, ab);
+                ac = row_dot(to_world, ac);
+            }
+            vec3 bent = mapped_normal(material, hit.triangle, ab, ac, s.uv, outward_normal, s.tangent);
+            s.shading_normal = guarded_normal(s.geometric_normal, wo, s.front ? bent : -bent);
+            if (TANGENTS) {
+                s.tangent.xyz = beside(s.shading_normal, s.tangent.xyz);
+                if (s.tangent.xyz == vec3(0.0)) s.tangent.w = 0.0;
+            }
+        }
+    }
     return s;
 }
 
@@ -136,17 +183,12 @@ Surfel surfel(Hit hit, vec3 wo) {
 void find_lobes(inout Surfel s, Material material, vec3 wo) {
     if (!is_physical(material)) return;
     Physical p = physical_at(material, s.uv, s.colour);
-    vec3 tangent = vec3(0.0);
     if (ANISOTROPY) {
         vec3 outward = s.front ? s.shading_normal : -s.shading_normal;
-        tangent = s.tangent - outward * dot(outward, s.tangent);
-        float size = largest(abs(tangent));
-        if (size > 0.0) tangent = normalize(tangent / size);
         vec2 sc = sin_cos_turns(p.anisotropy_rotation);
-        tangent = sc.y * tangent + sc.x * cross(outward, tangent);
-        s.tangent = tangent;
+        s.tangent.xyz = sc.y * s.tangent.xyz + sc.x * s.tangent.w * cross(outward, s.tangent.xyz);
     }
-    s.lobes = physical_lobes(p, s.shading_normal, tangent, s.front, wo);
+    s.lobes = physical_lobes(p, s.shading_normal, s.tangent.xyz, s.front, wo);
 }
 
 // What a choice of luminaires has to know of the receiver: the shading normal, of length 2 if light from both of its sides is scattered.

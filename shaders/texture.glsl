@@ -33,12 +33,16 @@ Texture load_texture(uint index) {
 // A coordinate that is not finite counts as 0. By the bits: a compiler may assume that no float is infinite.
 vec2 finite(vec2 uv) { return mix(uv, vec2(0.0), equal(floatBitsToUint(uv) & INFINITY_BITS, uvec2(INFINITY_BITS))); }
 
-// Linear RGB and alpha, bilinear between the centres of texels; v points up.
-vec4 texture_at(uint map, vec2 uv) {
-    Texture image = load_texture(map);
-    ivec2 size = ivec2(image.width, image.height);
+// Where uv is in the image.
+vec2 placed(Texture image, vec2 uv) {
     uv = finite(uv);
     if (MAP_TRANSFORMS) uv = finite(vec2(dot(image.u, vec3(uv, 1.0)), dot(image.v, vec3(uv, 1.0))));
+    return uv;
+}
+
+// Linear RGB and alpha, bilinear between the centres of texels; v points up.
+vec4 image_at(Texture image, vec2 uv) {
+    ivec2 size = ivec2(image.width, image.height);
     uv = image.clamped ? clamp(uv, vec2(0.0), vec2(1.0)) : uv - floor(uv);
     vec2 p = vec2(uv.x, 1.0 - uv.y) * vec2(size) - 0.5;
     vec2 low = floor(p);
@@ -57,6 +61,28 @@ vec4 texture_at(uint map, vec2 uv) {
     vec4 upper = mix(texel_at(row0 + uint(p0.x)), texel_at(row0 + uint(p1.x)), f.x);
     vec4 lower = mix(texel_at(row1 + uint(p0.x)), texel_at(row1 + uint(p1.x)), f.x);
     return mix(upper, lower, f.y);
+}
+
+vec4 texture_at(uint map, vec2 uv) {
+    Texture image = load_texture(map);
+    return image_at(image, placed(image, uv));
+}
+
+float height_at(Texture image, vec2 uv) {
+    vec4 texel = image_at(image, uv);
+    return texel.r + texel.g;
+}
+
+// How the heights of a texture grow with u and v, by differences over one texel.
+vec2 height_gradient(uint map, vec2 uv) {
+    Texture image = load_texture(map);
+    vec2 size = vec2(image.width, image.height);
+    uv = placed(image, uv);
+    vec2 across = vec2(0.5 / size.x, 0.0);
+    vec2 upwards = vec2(0.0, 0.5 / size.y);
+    vec2 slope = size * vec2(height_at(image, uv + across) - height_at(image, uv - across),
+                             height_at(image, uv + upwards) - height_at(image, uv - upwards));
+    return MAP_TRANSFORMS ? slope.x * image.u.xy + slope.y * image.v.xy : slope;
 }
 
 // The share of light that meets a point of a triangle at all.

@@ -267,7 +267,7 @@ fn twins() -> Vec<(&'static str, f64)> {
     use luminaire::gpu::pack::luminaire as bounds;
     use luminaire::gpu::probe::Function;
     use luminaire::gpu::specialization::{directions_number, extinction_number, light_sampling_number};
-    use luminaire::reference::{light_tree as choice, luminaire as light, path, physical, scatter};
+    use luminaire::reference::{light_tree as choice, luminaire as light, normal_map, path, physical, scatter};
     use luminaire::sampling::{CDF_NUMBERS, SENSOR_BLOCK};
     use luminaire::scene::{Directions, Extinction, Filter, LEAST_ALPHA, LightSampling, albedo_table, light_tree};
     use std::f64::consts::{FRAC_PI_4, PI};
@@ -310,6 +310,8 @@ fn twins() -> Vec<(&'static str, f64)> {
         ("LEAF", light_tree::LEAF.into()),
         ("ORDINAL_SHIFT", layout::ORDINAL_SHIFT.into()),
         ("HORIZON_MARGIN", choice::HORIZON_MARGIN),
+        ("LEAST_SQUARE", normal_map::LEAST_SQUARE),
+        ("LEAST_REFLECTED", normal_map::LEAST_REFLECTED),
         ("MOST_SINE", choice::MOST_SINE),
         ("LEAST_IMPORTANCE", choice::LEAST_IMPORTANCE),
         ("LEAST_DISTANCE2", choice::LEAST_DISTANCE2),

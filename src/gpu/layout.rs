@@ -160,6 +160,9 @@ shared! {
 /// Normals at a triangle's corners (binding 3): three texels, of which the fourth component is nothing.
 pub type VertexNormals = [[f32; 4]; 3];
 
+/// Tangents of a triangle's corners, with their handedness (binding 16): three texels.
+pub type CornerTangents = [[f32; 4]; 3];
+
 /// Colours of a triangle's corners (binding 14): three texels, of which the fourth component is nothing.
 pub type VertexColours = [[f32; 4]; 3];
 
@@ -186,7 +189,7 @@ shared! {
 }
 
 shared! {
-    /// A material (binding 5): eight texels, which `load_material` reads.
+    /// A material (binding 5): nine texels, which `load_material` reads.
     Material {
         /// Ambient albedo.
         ambient: [f32; 3],
@@ -228,6 +231,14 @@ shared! {
         kind: u32,
         /// Of even light from outside, what a coat lets through to the base.
         coat_transmittance: f32,
+        /// The one that is a map of normals.
+        normal_map: u32,
+        /// Factor to its parts along tangent and bitangent.
+        normal_scale: f32,
+        /// The one that is a map of heights.
+        bump_map: u32,
+        /// World length of a height of 1.
+        bump_scale: f32,
     }
 }
 

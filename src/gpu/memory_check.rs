@@ -18,7 +18,7 @@ const ACCELERATION_STRUCTURE: u64 = 120;
 /// What a scene takes, roughly.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Budget {
-    /// Triangles, normals, texture coordinates, vertex colours, instances.
+    /// Triangles, normals, texture coordinates, vertex colours, tangents, instances.
     geometry: u64,
     /// Nodes, or acceleration structures.
     acceleration: u64,
@@ -37,7 +37,8 @@ impl Budget {
         let triangle = size_of::<layout::Triangle>()
             + if features.vertex_normals { size_of::<layout::VertexNormals>() } else { 0 }
             + if textured { size_of::<layout::TriangleUvs>() } else { 0 }
-            + if features.vertex_colours { size_of::<layout::VertexColours>() } else { 0 };
+            + if features.vertex_colours { size_of::<layout::VertexColours>() } else { 0 }
+            + if features.tangents { size_of::<layout::CornerTangents>() } else { 0 };
         let objects = scene.objects.len() as u64 * size_of::<layout::Object>() as u64;
         let texels = texel_count(&scene.textures);
         let image = scene.environment.as_ref().and_then(|environment| environment.image.as_ref());

@@ -23,7 +23,7 @@ use bytemuck::Pod;
 use glam::DVec3;
 use std::sync::Arc;
 
-/// Bindings 0 to 6 and 9 to 16.
+/// Bindings 0 to 6 and 9 to 17.
 pub(super) struct GpuScene {
     frame: Buffer,
     /// What `frame` holds.
@@ -49,6 +49,7 @@ impl GpuScene {
         ray_query: bool,
         adjust: impl FnOnce(&mut KernelModel),
     ) -> Result<Self> {
+        let scene = &*scene.with_tangents();
         let table = LuminaireTable::new(scene);
         let mut model = KernelModel::with(scene, &table);
         adjust(&mut model);
@@ -112,7 +113,7 @@ impl GpuScene {
 
     /// Bindings 0 to 16, of which 7 and 8 are the caller's.
     pub(super) fn bindings<'a>(&'a self, seven: &'a Buffer, eight: &'a Buffer) -> Vec<Binding<'a>> {
-        let [intersector, triangles, normals, objects, uvs, colours] = self.geometry.bindings();
+        let [intersector, triangles, normals, objects, uvs, colours, tangents] = self.geometry.bindings();
         vec![
             Binding::Uniform(&self.frame),
             intersector,
@@ -131,6 +132,7 @@ impl GpuScene {
             colours,
             Binding::Texel(&self.lighting.light_tree),
             Binding::Texel(&self.lighting.physical),
+            tangents,
         ]
     }
 }

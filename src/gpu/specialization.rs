@@ -88,6 +88,10 @@ features! {
     clearcoats: "clearcoats",
     /// Some of these are brushed.
     anisotropy: "anisotropy",
+    /// Some material needs to know where the texture's u grows.
+    tangents: "tangents",
+    /// Some material has a map that bends the shading normal.
+    normal_maps: "normal maps",
 }
 
 /// The kernel that runs: the scene's features, and the choices of its integrator.
@@ -135,7 +139,9 @@ impl KernelModel {
             }),
             textures: material(|m| {
                 let own = [m.maps.ambient, m.maps.lambert, m.maps.glossy, m.maps.emission];
-                own.iter().any(Option::is_some) || m.physical.as_ref().is_some_and(|physical| physical.maps.any())
+                m.bends_normal()
+                    || own.iter().any(Option::is_some)
+                    || m.physical.as_ref().is_some_and(|physical| physical.maps.any())
             }),
             holes: material(Material::has_holes),
             thin: material(Material::is_sheet),
@@ -153,6 +159,8 @@ impl KernelModel {
             volumes: material(|m| m.is_body() && m.physical.as_ref().is_some_and(|p| p.absorption() != DVec3::ZERO)),
             clearcoats: physical(|p| p.clearcoat > 0.0),
             anisotropy: physical(|p| p.anisotropy > 0.0),
+            tangents: material(Material::needs_tangents),
+            normal_maps: material(Material::bends_normal),
         };
         KernelModel {
             features,
@@ -164,7 +172,7 @@ impl KernelModel {
     }
 
     /// Names of the specialization constants after those of [`Features::CONSTANTS`], in lower case.
-    pub const CONSTANTS: [&str; 9] = [
+    pub const CONSTANTS: [&str; 10] = [
         "orthographic",
         "sobol",
         "simple",
@@ -174,6 +182,7 @@ impl KernelModel {
         "extinction",
         "threshold",
         "transparent",
+        "smooth_terminator",
     ];
 
     /// How the kernel finds light: where nothing is sampled, by chance alone gives the same numbers.
@@ -202,6 +211,7 @@ impl KernelModel {
             extinction_number(estimator.extinction),
             u32::from(estimator.albedo_threshold.is_some()),
             u32::from(self.transparent),
+            u32::from(estimator.smooth_terminator && self.features.vertex_normals),
         ]);
         constants
     }
@@ -252,6 +262,9 @@ impl std::fmt::Display for KernelModel {
         }
         if self.transparent {
             f.write_str(", alpha")?;
+        }
+        if self.integrator.estimator().smooth_terminator {
+            f.write_str(", smooth terminator")?;
         }
         Ok(())
     }

@@ -230,10 +230,11 @@ fn luminaire(hash: &mut Sha256, luminaire: &Luminaire) {
 fn geometry(meshes: &[Arc<Mesh>], objects: &[Object]) -> String {
     digest(|hash| {
         for mesh in meshes {
-            let Mesh { name: _, positions, normals, uvs, colours, triangles } = &**mesh;
-            write(hash, &(positions.len(), normals.len(), uvs.len(), colours.len(), triangles.len()));
+            let Mesh { name: _, positions, normals, uvs, colours, tangents, triangles } = &**mesh;
+            write(hash, &(positions.len(), normals.len(), uvs.len(), colours.len(), tangents.len(), triangles.len()));
             positions.iter().chain(normals).chain(colours).for_each(|v| floats(hash, &v.to_array()));
             uvs.iter().for_each(|v| floats(hash, &v.to_array()));
+            tangents.iter().for_each(|v| floats(hash, &v.to_array()));
             for Triangle { vertices, material } in triangles {
                 vertices.iter().chain([material]).for_each(|i| hash.update(i.to_le_bytes()));
             }

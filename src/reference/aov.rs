@@ -33,7 +33,7 @@ impl Reference {
                 None => base + surfel.reflection,
             };
             normal += surfel.shading_normal;
-            depth += (surfel.position - position).dot(forward);
+            depth += (surfel.position - surfel.lift - position).dot(forward);
             hits += 1;
         }
         let [albedo, normal] = [albedo, normal].map(|v| v.as_vec3().to_array());

@@ -36,14 +36,3 @@ pub(super) fn texture_coordinates(mesh: &Mesh, triangle: &Triangle, weights: [f6
     }
     interpolate(weights, triangle.vertices.map(|v| mesh.uvs[v as usize].as_dvec2().extend(0.0))).truncate()
 }
-
-/// The direction in the plane of a triangle, whose corners these are, in which the first texture coordinate grows; 0 if there is none.
-pub(super) fn direction_of_u(mesh: &Mesh, triangle: &Triangle, [a, b, c]: [DVec3; 3]) -> DVec3 {
-    if mesh.uvs.is_empty() {
-        return DVec3::ZERO;
-    }
-    let [ua, ub, uc] = triangle.vertices.map(|v| mesh.uvs[v as usize].as_dvec2());
-    let (along_b, along_c) = (ub - ua, uc - ua);
-    let determinant = along_b.perp_dot(along_c);
-    ((b - a) * along_c.y - (c - a) * along_b.y) * determinant.signum() * f64::from(u8::from(determinant != 0.0))
-}

@@ -10,6 +10,7 @@
 //! | Inefficient Integration, More Efficient Integration | [`bsdf`]: `bsdf_direction`, `bsdf_pdf`; [`warp`] |
 //! | Extinction | [`scatter`]: `scatter`, `survival` |
 //! | Impulse Reflection, Adding Transmission | [`fresnel`]: `fresnel`, `refract`; [`impulse`]: `impulses` |
+//! | (normal and height maps) | [`normal_map`] |
 //! | Intersection Problems | [`intersect`], [`surfel`]: `offset_ray_origin` |
 //! | Sensor Modelling | [`sensor`]: `sensor_ray` |
 //! | (surfaces of real scenes) | [`physical`], [`microfacet`], [`albedo`] |
@@ -31,6 +32,7 @@ pub mod light_tree;
 pub mod lost_light;
 pub mod luminaire;
 pub mod microfacet;
+pub mod normal_map;
 pub mod path;
 pub mod physical;
 mod physical_surface;

@@ -1,5 +1,6 @@
 //! The numbers of a metallic-roughness surface at a point: its maps, the colours of the vertices, and which way it is brushed.
 
+use super::normal_map::Tangent;
 use super::physical::PhysicalSurface;
 use super::prepared_scene::Reference;
 use crate::scene::{ChannelMap, Material};
@@ -7,13 +8,14 @@ use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
 
 impl Reference {
-    /// What the material's metallic-roughness surface is at a point, if it has one. `tangent` is the direction in which `u` grows, and `outward` the unit normal.
+    /// What the material's metallic-roughness surface is at a point, if it has one. `outward` is the unit normal.
     pub(super) fn physical_surface(
         &self,
         material: &Material,
         uv: DVec2,
         colour: DVec3,
-        [tangent, outward]: [DVec3; 2],
+        tangent: Option<Tangent>,
+        outward: DVec3,
     ) -> Option<PhysicalSurface> {
         let p = material.physical.as_ref()?;
         let maps = &p.maps;
@@ -28,14 +30,14 @@ impl Reference {
             turn += (2.0 * texel.y - 1.0).atan2(2.0 * texel.x - 1.0);
         }
         let (sin, cos) = turn.rem_euclid(TAU).sin_cos();
-        let tangent = (tangent - outward * outward.dot(tangent)).normalize_or_zero();
+        let along = |tangent: Tangent| cos * tangent.direction + sin * tangent.bitangent(outward);
         let own = PhysicalSurface::without_maps(material)?;
         Some(PhysicalSurface {
             base: own.base * tint(maps.base_color) * colour,
             metallic: own.metallic * number(maps.metallic),
             roughness: own.roughness * number(maps.roughness),
             anisotropy,
-            tangent: cos * tangent + sin * outward.cross(tangent),
+            tangent: tangent.map_or(DVec3::ZERO, along),
             specular: own.specular * number(maps.specular),
             specular_color: own.specular_color * tint(maps.specular_color),
             transmission: own.transmission * number(maps.transmission),

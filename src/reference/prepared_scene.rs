@@ -39,6 +39,7 @@ impl Reference {
 
     /// A tracer that tests every triangle for every ray: the oracle for [`Reference::new`], too simple to be wrong.
     pub fn brute_force(scene: &Scene) -> Self {
+        let scene = scene.with_tangents();
         let instances = scene
             .objects
             .iter()
@@ -50,8 +51,8 @@ impl Reference {
             .collect();
         let coated = scene.materials.iter().map(|m| m.eta.filter(|_| m.is_coated()));
         let coats = coated.map(|eta| eta.map_or(1.0, |eta| coat_transmittance(eta.into()))).collect();
-        let (luminaires, filter) = (LuminaireTable::new(scene), filter_table(&scene.film));
-        Reference { scene: scene.clone(), instances, trees: None, luminaires, coats, filter }
+        let (luminaires, filter) = (LuminaireTable::new(&scene), filter_table(&scene.film));
+        Reference { scene: scene.into_owned(), instances, trees: None, luminaires, coats, filter }
     }
 
     /// Takes another integrator. Which luminaires are sampled, and how often, may depend on it: returns the table that there was, if another one was made.

@@ -1,6 +1,7 @@
 //! The surface element: everything that shading needs to know about a point on a surface.
 
-use super::hit::{Hit, direction_of_u, interpolate, texture_coordinates, vertex_colour};
+use super::hit::{Hit, interpolate, texture_coordinates, vertex_colour};
+use super::normal_map::{Tangent, guarded_normal};
 use super::physical::{Lobes, PhysicalSurface};
 use super::prepared_scene::Reference;
 use super::rounding::gamma;
@@ -20,6 +21,12 @@ pub struct Surfel {
     pub geometric_normal: DVec3,
     /// Unit normal interpolated from the vertices where there are any, on the side of `geometric_normal` and of `wo`.
     pub shading_normal: DVec3,
+    /// Where the texture's u grows, beside the shading normal; none where the material does not ask for it, or the mesh has none.
+    pub tangent: Option<Tangent>,
+    /// Where the terminator is smoothed: the interpolated normal that parts above from below in place of the triangle's.
+    pub horizon: Option<DVec3>,
+    /// Where the terminator is smoothed: by how much `position` was moved off the triangle.
+    pub lift: DVec3,
     /// Texture coordinates; 0 where there are none.
     pub uv: DVec2,
     /// Whether `wo` is on the outward side.
@@ -79,16 +86,38 @@ impl Reference {
             }
         }
         let material = self.scene.material_of(object, triangle);
-        let outward_normal = if front { shading_normal } else { -shading_normal };
+        let (mut horizon, mut lift) = (None, DVec3::ZERO);
+        // What lets light through has no side from which alone it is lit.
+        let smooth_terminator = self.scene.integrator.estimator().smooth_terminator && !material.transmits();
+        if smooth_terminator && shading_normal != geometric_normal {
+            let normals = triangle.vertices.map(|v| mesh.normals[v as usize].as_dvec3());
+            let normals = normals.map(|n| facing((normal_to_world * n).normalize_or_zero(), shading_normal));
+            (horizon, lift) = (Some(shading_normal), terminator_lift(position, corners, normals, weights));
+        }
         let uv = texture_coordinates(mesh, triangle, weights);
         let map = |map: Option<u32>| self.map(map, uv).truncate();
+        let outwards = if front { 1.0 } else { -1.0 };
+        let mut outward_normal = outwards * shading_normal;
+        let mut tangent = match material.needs_tangents() {
+            true => self.tangent(hit.object, hit.triangle, weights, outward_normal),
+            false => None,
+        };
+        if material.bends_normal() {
+            let bent = self.mapped_normal(material, (mesh, triangle, corners), uv, outward_normal, tangent);
+            shading_normal = guarded_normal(geometric_normal, wo, outwards * bent);
+            outward_normal = outwards * shading_normal;
+            tangent = tangent.and_then(|tangent| tangent.beside(outward_normal));
+        }
         let colour = vertex_colour(mesh, triangle, weights);
         Surfel {
             owner: [hit.object, hit.triangle],
-            position,
+            position: position + lift,
             position_error: position_error(corners),
             geometric_normal,
             shading_normal,
+            tangent,
+            horizon,
+            lift,
             uv,
             front,
             emission: if front || !material.one_sided {
@@ -106,12 +135,7 @@ impl Reference {
             thin: material.is_sheet(),
             coat_transmittance: self.coats[object.material.unwrap_or(triangle.material) as usize],
             impulse_probability: material.impulse_probability.map(f64::from),
-            physical: self.physical_surface(
-                material,
-                uv,
-                colour,
-                [direction_of_u(mesh, triangle, corners), outward_normal],
-            ),
+            physical: self.physical_surface(material, uv, colour, tangent, outward_normal),
         }
     }
 }
@@ -119,7 +143,12 @@ impl Reference {
 impl Surfel {
     /// Whether a direction is on the side of `wo`, of the triangle and of the shading normal's plane.
     pub fn is_above(&self, wi: DVec3) -> bool {
-        self.geometric_normal.dot(wi) > 0.0 && self.shading_normal.dot(wi) > 0.0
+        self.horizon().dot(wi) > 0.0 && self.shading_normal.dot(wi) > 0.0
+    }
+
+    /// The normal of the plane above which there is light: the triangle's, unless the terminator is smoothed.
+    fn horizon(&self) -> DVec3 {
+        self.horizon.unwrap_or(self.geometric_normal)
     }
 
     /// What a metallic-roughness surface does with light towards `wo`; none if it is none.
@@ -129,7 +158,7 @@ impl Surfel {
 
     /// Whether a direction is on one side of both the triangle and the shading normal's plane.
     pub fn is_on_one_side(&self, wi: DVec3) -> bool {
-        self.geometric_normal.dot(wi) * self.shading_normal.dot(wi) > 0.0
+        self.horizon().dot(wi) * self.shading_normal.dot(wi) > 0.0
     }
 
     /// The cosine by which light from a direction counts.
@@ -163,6 +192,13 @@ impl Surfel {
     pub fn offset_ray_origin(&self, direction: DVec3) -> DVec3 {
         offset_ray_origin(self.position, self.position_error, self.geometric_normal, direction)
     }
+}
+
+/// How far a point of a triangle is below the surface that its vertex normals mean (Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II, 2021): the weighted
+/// mean of its distances to the planes across the normals at the corners, along these; those above which it stands do not count.
+fn terminator_lift(p: DVec3, corners: [DVec3; 3], normals: [DVec3; 3], weights: [f64; 3]) -> DVec3 {
+    let to_plane = |i: usize| normals[i] * (corners[i] - p).dot(normals[i]).max(0.0);
+    interpolate(weights, [to_plane(0), to_plane(1), to_plane(2)])
 }
 
 /// Bounds the rounding error of a point `b0 a + b1 b + b2 c` of a triangle, along each axis. The weights add up to 1, so

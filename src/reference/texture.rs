@@ -8,9 +8,34 @@ use glam::{Affine2, DVec2, DVec4};
 ///
 /// The texture's transform comes first. Coordinates repeat, or stay at the border if the texture says so; one that is not finite counts as 0.
 pub fn bilinear(texture: &Texture, uv: DVec2) -> DVec4 {
-    let finite = |x: f64| if x.is_finite() { x } else { 0.0 };
+    image_at(texture, placed(texture, uv))
+}
+
+fn finite(x: f64) -> f64 {
+    if x.is_finite() { x } else { 0.0 }
+}
+
+/// Where `uv` is in the image.
+fn placed(texture: &Texture, uv: DVec2) -> DVec2 {
     let Affine2 { matrix2, translation } = texture.transform;
-    let uv = matrix2.as_dmat2() * DVec2::new(finite(uv.x), finite(uv.y)) + translation.as_dvec2();
+    matrix2.as_dmat2() * DVec2::new(finite(uv.x), finite(uv.y)) + translation.as_dvec2()
+}
+
+/// How the heights of a texture, which are the sums of its red and green, grow with u and v: differences over one texel, so that the slope is continuous where
+/// that of bilinear heights jumps from texel to texel.
+pub fn height_gradient(texture: &Texture, uv: DVec2) -> DVec2 {
+    let size = DVec2::new(f64::from(texture.width), f64::from(texture.height));
+    let place = placed(texture, uv);
+    let height = |by: DVec2| {
+        let texel = image_at(texture, place + by / size);
+        texel.x + texel.y
+    };
+    let across = height(DVec2::X * 0.5) - height(DVec2::X * -0.5);
+    let upwards = height(DVec2::Y * 0.5) - height(DVec2::Y * -0.5);
+    texture.transform.matrix2.as_dmat2().transpose() * (DVec2::new(across, upwards) * size)
+}
+
+fn image_at(texture: &Texture, uv: DVec2) -> DVec4 {
     let (width, height) = (f64::from(texture.width), f64::from(texture.height));
     let x = finite(uv.x) * width - 0.5;
     let y = (1.0 - finite(uv.y)) * height - 0.5;

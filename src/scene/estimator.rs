@@ -64,6 +64,9 @@ pub struct Estimator {
     /// At most this many indirect bounces, up to [`Estimator::MOST_BOUNCES`]; none: no limit. 0 is direct light only. Emission at
     /// bounce `max_bounces + 1` still counts where it is direct light.
     pub max_bounces: Option<u32>,
+    /// Whether coarse meshes with vertex normals are lit as the smooth surfaces that they stand for: rays leave from above their triangles, and the shading normal alone
+    /// says what is above (Hanika, "Hacking the Shadow Terminator", 2021). It takes the steps out of the edges of their own shadows: a bias.
+    pub smooth_terminator: bool,
 }
 
 /// How light is found.
@@ -138,6 +141,7 @@ impl Default for Estimator {
             extinction: Extinction::Throughput,
             albedo_threshold: None,
             max_bounces: None,
+            smooth_terminator: false,
         }
     }
 }
@@ -151,6 +155,7 @@ const COSINE: Estimator = Estimator {
     extinction: Extinction::Surface,
     albedo_threshold: None,
     max_bounces: None,
+    smooth_terminator: false,
 };
 
 /// Names for stages of the lecture, besides `simple` and `default`.
@@ -211,6 +216,8 @@ pub struct EstimatorChanges {
     pub albedo_threshold: Option<f32>,
     /// See [`Estimator::max_bounces`].
     pub max_bounces: Option<u32>,
+    /// See [`Estimator::smooth_terminator`].
+    pub smooth_terminator: Option<bool>,
 }
 
 impl EstimatorChanges {
@@ -224,6 +231,7 @@ impl EstimatorChanges {
             extinction: self.extinction.unwrap_or(estimator.extinction),
             albedo_threshold: self.albedo_threshold.or(estimator.albedo_threshold),
             max_bounces: self.max_bounces.or(estimator.max_bounces),
+            smooth_terminator: self.smooth_terminator.unwrap_or(estimator.smooth_terminator),
         }
     }
 

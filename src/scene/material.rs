@@ -42,6 +42,10 @@ pub struct Material {
     pub opacity: f32,
     /// Textures that multiply the numbers above.
     pub maps: Maps,
+    /// A texture that bends the shading normal; none: nothing does.
+    pub normal_map: Option<NormalMap>,
+    /// A texture of heights, whose slopes bend it after that.
+    pub bump_map: Option<BumpMap>,
     /// The metallic-roughness surface that scatters in place of all albedos above; none: what the lecture describes.
     pub physical: Option<Physical>,
 }
@@ -79,9 +83,30 @@ impl Default for Material {
             impulse_probability: None,
             opacity: 1.0,
             maps: Maps::default(),
+            normal_map: None,
+            bump_map: None,
             physical: None,
         }
     }
+}
+
+/// A map of normals in tangent space, as glTF has it: red, green and blue from [0, 1] to [-1, 1] are the parts of the normal along the tangent (u), the bitangent
+/// (v, which points up in the image) and the surface's own normal. The numbers are linear.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NormalMap {
+    /// Index into [`Scene::textures`](super::Scene::textures).
+    pub texture: u32,
+    /// Factor to the parts along tangent and bitangent.
+    pub scale: f32,
+}
+
+/// A map of heights above the surface, which change nothing but its shading normal (Blinn, "Simulation of Wrinkled Surfaces", 1978).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BumpMap {
+    /// Index into [`Scene::textures`](super::Scene::textures); a height is the sum of red and green, which hold its upper and its lower digits.
+    pub texture: u32,
+    /// World length of a height of 1, whatever the instance's scale.
+    pub scale: f32,
 }
 
 impl Material {
@@ -127,10 +152,20 @@ impl Material {
         base && self.reflection != Vec3::ZERO && self.eta.is_some() && self.transmission == Vec3::ZERO
     }
 
-    /// Whether any of its numbers has a texture.
+    /// Whether a texture bends the shading normal.
+    pub fn bends_normal(&self) -> bool {
+        self.normal_map.is_some() || self.bump_map.is_some()
+    }
+
+    /// Whether what it does depends on the direction in which the texture's u grows.
+    pub fn needs_tangents(&self) -> bool {
+        self.normal_map.is_some() || self.physical.as_ref().is_some_and(Physical::needs_tangents)
+    }
+
+    /// Whether any of its numbers has a texture, or its normal.
     pub fn has_maps(&self) -> bool {
         let physical = self.physical.as_ref().is_some_and(|physical| physical.maps != PhysicalMaps::default());
-        physical || self.maps != Maps::default()
+        physical || self.maps != Maps::default() || self.bends_normal()
     }
 
     /// Whether nothing is scattered, so that which way the surface faces makes no difference.

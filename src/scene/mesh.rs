@@ -1,6 +1,6 @@
 //! `Mesh`, `Triangle`, and `Object`, which is where a mesh stands.
 
-use glam::{Affine3A, DAffine3, DMat3, DVec3, Vec2, Vec3};
+use glam::{Affine3A, DAffine3, DMat3, DVec3, Vec2, Vec3, Vec4};
 
 /// Triangles in object space.
 #[derive(Debug, Clone, Default)]
@@ -16,6 +16,10 @@ pub struct Mesh {
     pub uvs: Vec<Vec2>,
     /// Colours of the vertices, linear, 0 to 1, which multiply the diffuse and the ambient albedo: empty (none), or one for each position.
     pub colours: Vec<Vec3>,
+    /// Tangents of the corners, three for each triangle: the unit direction in which u grows, and in `w` the handedness, 1 or -1, by which the
+    /// bitangent is `w normal x tangent`; one that is zero means "none here". Empty: nothing needs them ([`Scene::add_tangents`](crate::scene::Scene::add_tangents)),
+    /// or nobody has made them.
+    pub tangents: Vec<Vec4>,
     /// The triangles; all have a non-zero area.
     pub triangles: Vec<Triangle>,
 }

@@ -28,6 +28,7 @@ mod sets;
 mod settings;
 mod studio_sky;
 mod sun_disc;
+mod tangents;
 mod texture;
 mod world;
 
@@ -44,7 +45,7 @@ pub use light_tree::LightTree;
 pub use load::{Choices, SceneFile, Sky, Up, load, load_with, scene_file, use_camera};
 pub use luminaire::{LEAST_ANGLE, Luminaire, one_minus_cos, photometric_frame, spot_edge};
 pub use luminaire_table::{EmissiveTriangle, LuminaireTable, SampledLuminaire};
-pub use material::{Maps, Material};
+pub use material::{BumpMap, Maps, Material, NormalMap};
 pub use mesh::{Mesh, Object, Triangle};
 pub(crate) use mesh::{moved_box, outward, widen};
 pub use physical::{ChannelMap, LEAST_ALPHA, Physical, PhysicalMaps, conductor_average, conductor_reflectance};

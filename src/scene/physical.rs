@@ -55,6 +55,13 @@ pub struct Physical {
     pub maps: PhysicalMaps,
 }
 
+impl Physical {
+    /// Whether it scatters differently along the tangent and across it.
+    pub fn needs_tangents(&self) -> bool {
+        self.anisotropy != 0.0
+    }
+}
+
 /// The textures of a [`Physical`] surface; each multiplies the number of its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct PhysicalMaps {

@@ -6,6 +6,7 @@ pub mod directions;
 pub mod facets;
 pub mod lamps;
 pub mod many_lamps;
+pub mod relief;
 pub mod scenes;
 pub mod stage;
 pub mod statistics;

@@ -24,6 +24,7 @@ mod maps;
 mod overlapping_lamps;
 mod physical;
 mod pictures;
+mod relief;
 mod scattering;
 mod scenes;
 mod sensor;

@@ -17,6 +17,7 @@ mod lost_light;
 mod luminaire_choice;
 mod overlapping_lamps;
 mod physical;
+mod relief;
 mod roulette;
 mod sampling;
 mod scattering;

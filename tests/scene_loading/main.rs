@@ -16,6 +16,7 @@ mod physical;
 mod physical_keys;
 mod pictures;
 mod polygons;
+mod relief;
 mod scene_files;
 mod settings;
 mod smoothing;

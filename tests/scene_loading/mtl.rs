@@ -72,20 +72,20 @@ fn a_bad_mtl_is_a_warning_with_its_line() {
 
 #[test]
 fn materials_that_lack_the_same_share_a_warning() {
-    let text: String = (0..10).map(|i| format!("newmtl m{i}\nbump b.png\n")).collect();
+    let text: String = (0..10).map(|i| format!("newmtl m{i}\ndisp b.png\n")).collect();
     let faces: String = (0..10).map(|i| format!("usemtl m{i}\nf 1 2 3\n")).collect();
     let scene = obj(format!("mtllib mesh.mtl\n{TRIANGLE}{faces}")).with("mesh.mtl", text).load("mesh.obj");
-    warned(&scene, &["mesh.mtl: materials `m0`, `m1`", "`m7` and 2 more: not modelled, ignored: bump"]);
+    warned(&scene, &["mesh.mtl: materials `m0`, `m1`", "`m7` and 2 more: not modelled, ignored: disp"]);
     assert_eq!(scene.warnings.len(), 1, "{:?}", scene.warnings);
 }
 
 #[test]
 fn what_is_not_modelled_is_a_warning_for_materials_in_use() {
-    let feature = "bump b.png\nmap_Ns c.png\nbump b.png\nd -halo 0.5\nmap_Kd -t 1 0 0 a.png\n";
+    let feature = "disp b.png\nmap_Ns c.png\ndisp b.png\nd -halo 0.5\nmap_Kd -t 1 0 0 a.png\n";
     let scene = with_mtl(format!("newmtl m\n{feature}newmtl unused\n{feature}")).load("mesh.obj");
     let warnings: Vec<_> = scene.warnings.iter().filter(|warning| warning.contains("not modelled")).collect();
     assert_eq!(warnings.len(), 1, "{warnings:?}");
-    warned(&scene, &["`m`", "bump, map_Ns, d -halo, map_Kd -t"]);
+    warned(&scene, &["`m`", "disp, map_Ns, d -halo, map_Kd -t"]);
     assert_eq!(first_material(&scene).opacity, 0.5);
 }
 

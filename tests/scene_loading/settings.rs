@@ -83,7 +83,7 @@ fn estimators_by_name_and_by_parts() {
         assert_eq!(path(&format!("estimator = \"{name}\"\n")), estimator, "{name}");
     }
     let parts = "light_sampling = \"direct\"\narea_sampling = \"area\"\nlight_choice = \"tree\"\ndirections = \"uniform\"\nextinction = \"off\"\n\
-                 albedo_threshold = 0.01\nmax_bounces = 3\n";
+                 albedo_threshold = 0.01\nmax_bounces = 3\nsmooth_terminator = true\n";
     let expected = Estimator {
         light_sampling: LightSampling::Direct,
         area_sampling: AreaSampling::Area,
@@ -91,6 +91,7 @@ fn estimators_by_name_and_by_parts() {
         directions: Directions::Uniform,
         extinction: Extinction::Off,
         albedo_threshold: Some(0.01),
+        smooth_terminator: true,
         max_bounces: Some(3),
     };
     assert_eq!(path(parts), expected);

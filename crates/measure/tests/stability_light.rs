@@ -14,8 +14,8 @@ use luminaire::scene::{Estimator, Integrator, LightChoice, LuminaireTable, Sampl
 use luminaire_measure::chart::{Chart, Series};
 use luminaire_measure::stability::Sweep;
 use luminaire_measure::stability::sweeps::{
-    absorption, anisotropy, caustics, edge_on, glossy, glossy_caustics, luminaire as lamps, rough_index, roughness,
-    spot,
+    absorption, anisotropy, caustics, edge_on, glossy, glossy_caustics, grazing, luminaire as lamps, rough_index,
+    roughness, spot,
 };
 use std::f64::consts::TAU;
 
@@ -102,6 +102,23 @@ fn indices_through_one() {
 fn bodies_from_black_to_clear() {
     let sweep = absorption::sweep(&bench(), &[1e-6, 0.1, 1.0, 1e6], 1 << 13).expect("the sweep runs");
     assert_all_found(&chart(&sweep, "energy").series.iter().collect::<Vec<_>>(), 2e-6, 0.02);
+}
+
+/// However flat one looks at bent normals, a mirror shows the whole sky, a diffuse plate what its lobe has above the surface, and no metal sends back more than
+/// it gets, or nothing.
+#[test]
+fn bent_normals_seen_at_grazing_angles() {
+    let sweep = grazing::sweep(&bench(), &[45.0, 1.0, 1e-2, 1e-4], 1 << 13).expect("the sweep runs");
+    let all: Vec<_> = chart(&sweep, "energy").series.iter().collect();
+    assert!(all.len() >= 9);
+    assert_all_found(&all, 2e-4, 0.02);
+    for series in &chart(&sweep, "albedo").series {
+        assert!(
+            series.points.iter().all(|p| p.y > 0.3 && p.y < 1.0 + 1e-5 + 4.0 * p.error.unwrap_or(0.0)),
+            "{series:?}"
+        );
+    }
+    assert!(chart(&sweep, "noise").series.iter().all(|series| series.points.iter().all(|p| p.y < 2.0)));
 }
 
 /// Lambert's formula holds from a ten-thousandth of a lamp's side to a million of them, and the default estimator is never noisy; by area

@@ -3,7 +3,9 @@
 use super::ray_query;
 use crate::gpu::bvh::{MeshBvh, STACK_SIZE, TwoLevelBvh, spatial_order};
 use crate::gpu::layout::Object;
-use crate::gpu::pack::triangle::{object, texture_coordinates, triangles, vertex_colours, vertex_normals};
+use crate::gpu::pack::triangle::{
+    corner_tangents, object, texture_coordinates, triangles, vertex_colours, vertex_normals,
+};
 use crate::gpu::specialization::KernelModel;
 use crate::gpu::vulkan::binding::Binding;
 use crate::gpu::vulkan::device::Device;
@@ -21,6 +23,7 @@ pub struct Geometry {
     normals: TexelBuffer,
     uvs: TexelBuffer,
     colours: TexelBuffer,
+    tangents: TexelBuffer,
     objects: TexelBuffer,
 }
 
@@ -133,11 +136,13 @@ impl Geometry {
         let textured = model.features.textures || model.features.holes || model.features.anisotropy;
         let uvs = if textured { texture_coordinates(scene, meshes) } else { vec![] };
         let colours = if model.features.vertex_colours { vertex_colours(scene, meshes) } else { vec![] };
+        let tangents = if model.features.tangents { corner_tangents(scene, meshes) } else { vec![] };
         let objects: Vec<Object> = object_order.iter().map(|&index| object(scene, meshes, tree, index)).collect();
         let triangles = TexelBuffer::new(device, "triangles", &corners, usage)?;
         let normals = TexelBuffer::new(device, "normals", &normals, vk::BufferUsageFlags::empty())?;
         let uvs = TexelBuffer::new(device, "texture coordinates", &uvs, vk::BufferUsageFlags::empty())?;
         let colours = TexelBuffer::new(device, "vertex colours", &colours, vk::BufferUsageFlags::empty())?;
+        let tangents = TexelBuffer::new(device, "tangents", &tangents, vk::BufferUsageFlags::empty())?;
         let intersector = intersector(&triangles, &objects)?;
         Ok(Geometry {
             intersector,
@@ -145,12 +150,13 @@ impl Geometry {
             normals,
             uvs,
             colours,
+            tangents,
             objects: TexelBuffer::new(device, "objects", &objects, vk::BufferUsageFlags::empty())?,
         })
     }
 
-    /// Bindings 1 to 4, 9 and 14.
-    pub(crate) fn bindings(&self) -> [Binding<'_>; 6] {
+    /// Bindings 1 to 4, 9, 14 and 16.
+    pub(crate) fn bindings(&self) -> [Binding<'_>; 7] {
         let intersector = match &self.intersector {
             Intersector::ComputeBvh(nodes) => Binding::Texel(nodes),
             Intersector::RayQuery(top) => Binding::AccelerationStructure(top.handle()),
@@ -162,6 +168,7 @@ impl Geometry {
             Binding::Texel(&self.objects),
             Binding::Texel(&self.uvs),
             Binding::Texel(&self.colours),
+            Binding::Texel(&self.tangents),
         ]
     }
 }

@@ -36,5 +36,9 @@ pub(in crate::gpu) fn material(scene: &Scene, table: &LuminaireTable, index: usi
         one_sided: u32::from(material.one_sided),
         kind: u32::from(material.is_sheet()) + 2 * physical,
         coat_transmittance: coat as f32,
+        normal_map: map(material.normal_map.map(|map| map.texture)),
+        normal_scale: material.normal_map.map_or(1.0, |map| map.scale),
+        bump_map: map(material.bump_map.map(|map| map.texture)),
+        bump_scale: material.bump_map.map_or(1.0, |map| map.scale),
     }
 }

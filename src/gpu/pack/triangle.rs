@@ -1,7 +1,7 @@
 //! Triangles and objects, in the order in which the kernel counts them.
 
 use crate::gpu::bvh::MeshBvh;
-use crate::gpu::layout::{self, HAS_PLANE, ORDINAL_SHIFT, VertexColours, VertexNormals};
+use crate::gpu::layout::{self, CornerTangents, HAS_PLANE, ORDINAL_SHIFT, VertexColours, VertexNormals};
 use crate::scene::light_tree::{LightTree, emissive_ordinals};
 use crate::scene::{Mesh, Scene, Texture, Triangle, widen};
 use glam::{DAffine3, Vec2, Vec3};
@@ -49,6 +49,16 @@ pub(in crate::gpu) fn vertex_colours(scene: &Scene, meshes: &[MeshBvh]) -> Vec<V
     let mut packed = Vec::with_capacity(count(meshes));
     packed.extend(in_order(scene, meshes).map(|(mesh, _, triangle)| {
         triangle.vertices.map(|v| mesh.colours.get(v as usize).copied().unwrap_or(Vec3::ONE).extend(0.0).to_array())
+    }));
+    packed
+}
+
+/// The tangents of their corners; zero where a mesh has none.
+pub(in crate::gpu) fn corner_tangents(scene: &Scene, meshes: &[MeshBvh]) -> Vec<CornerTangents> {
+    let mut packed = Vec::with_capacity(count(meshes));
+    packed.extend(in_order(scene, meshes).map(|(mesh, index, _)| {
+        let corner = |corner: usize| mesh.tangents.get(3 * index as usize + corner).map_or([0.0; 4], |t| t.to_array());
+        [0, 1, 2].map(corner)
     }));
     packed
 }

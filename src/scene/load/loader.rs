@@ -257,8 +257,9 @@ impl Loader {
             for WithoutUv { material, at } in &self.without_uv[object.mesh as usize] {
                 let material = &materials[object.material.unwrap_or(*material) as usize];
                 if material.has_maps() && said.insert((&material.name, at)) {
+                    let relief = if material.bends_normal() { ", and no normal is bent" } else { "" };
                     self.warnings.push(format!(
-                        "{at}: faces without texture coordinates, but material `{}` has maps; (0, 0) is used",
+                        "{at}: faces without texture coordinates, but material `{}` has maps; (0, 0) is used{relief}",
                         material.name
                     ));
                 }

@@ -2,8 +2,8 @@
 
 pub(super) use super::map_draft::MapDraft;
 use super::physical_draft::{PhysicalDraft, PhysicalDraftMaps, bounded};
-use super::texture::{Channel, MapFile, Textures};
-use crate::scene::{Maps, Material};
+use super::texture::{Channel, MapFile, Relief, Textures};
+use crate::scene::{BumpMap, Maps, Material, NormalMap};
 use glam::Vec3;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
@@ -49,6 +49,12 @@ pub(super) struct Draft {
     pub impulse_probability: Option<f32>,
     /// `d`.
     pub opacity: Option<f32>,
+    /// Factor to what the normals of a map have along the surface.
+    pub normal_scale: Option<f32>,
+    /// Length of a height of 1.
+    pub bump_scale: Option<f32>,
+    /// What the map of heights may be besides.
+    pub bump_word: BumpWord,
     /// The maps of all these.
     pub maps: DraftMaps,
     /// Warnings that many materials of a file may share: the file, and what is said of them.
@@ -65,6 +71,18 @@ pub(super) struct Draft {
     pub otherwise: Option<Box<Draft>>,
 }
 
+/// Who names the map of heights.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) enum BumpWord {
+    /// A scene file, in which it is nothing else.
+    #[default]
+    Key,
+    /// An MTL file, whose word stands for normals, too: the image tells.
+    Mtl,
+    /// The same from Blender, which writes it of normals.
+    Blender,
+}
+
 /// The maps of a [`Draft`].
 #[derive(Debug, Clone, Default)]
 pub(super) struct DraftMaps {
@@ -78,6 +96,10 @@ pub(super) struct DraftMaps {
     pub emission: MapDraft,
     /// `map_d`.
     pub opacity: MapDraft,
+    /// `norm`.
+    pub normal: MapDraft,
+    /// `map_Bump`.
+    pub bump: MapDraft,
 }
 
 impl Draft {
@@ -88,9 +110,9 @@ impl Draft {
 
     /// The files of its maps that are there.
     pub(super) fn map_files(&self) -> Vec<PathBuf> {
-        let DraftMaps { ambient, diffuse, glossy, emission, opacity } = &self.maps;
+        let DraftMaps { ambient, diffuse, glossy, emission, opacity, normal, bump } = &self.maps;
         let physical = self.physical.iter().flat_map(|physical| physical.maps.all());
-        let maps = [ambient, diffuse, glossy, emission, opacity].into_iter().chain(physical);
+        let maps = [ambient, diffuse, glossy, emission, opacity, normal, bump].into_iter().chain(physical);
         maps.filter_map(MapDraft::file).filter_map(MapFile::path).collect()
     }
 
@@ -139,6 +161,14 @@ impl Draft {
         self.thin = other.thin.or(self.thin);
         self.impulse_probability = other.impulse_probability.or(self.impulse_probability);
         self.opacity = other.opacity.or(self.opacity);
+        self.normal_scale = other.normal_scale.or(self.normal_scale);
+        self.bump_scale = other.bump_scale.or(self.bump_scale);
+        self.maps.normal.overlay(&other.maps.normal);
+        if !matches!(other.maps.bump, MapDraft::Unstated) {
+            // Whoever names a map by this key means what it says.
+            self.bump_word = other.bump_word;
+            self.maps.bump.overlay(&other.maps.bump);
+        }
         self.maps.ambient.overlay(&other.maps.ambient);
         self.maps.diffuse.overlay(&other.maps.diffuse);
         self.maps.glossy.overlay(&other.maps.glossy);
@@ -202,6 +232,8 @@ impl Draft {
             impulse_probability: self.impulse_probability,
             opacity: self.opacity.unwrap_or(1.0),
             maps: Maps::default(),
+            normal_map: None,
+            bump_map: None,
             physical: None,
         };
         if material.glossy != Vec3::ZERO && self.exponent.is_none() {
@@ -215,11 +247,56 @@ impl Draft {
             ));
         }
         self.load_maps(&mut material, textures, warnings);
+        self.load_relief(&mut material, textures, warnings);
         if material.opacity == 0.0 {
             warnings.push(format!("material `{name}` has opacity 0 (d): its surfaces cannot be seen"));
         }
         conserve_energy(&mut material, textures, warnings);
         material
+    }
+
+    /// What bends normals. A scale of 0 is no map.
+    fn load_relief(&self, material: &mut Material, textures: &mut Textures, warnings: &mut Vec<String>) {
+        let name = &self.name;
+        for (key, stated, map) in [
+            ("normal", self.normal_scale.is_some(), &self.maps.normal),
+            ("bump", self.bump_scale.is_some(), &self.maps.bump),
+        ] {
+            if stated && map.file().is_none() {
+                warnings.push(format!("material `{name}`: `{key}_scale` does nothing without `{key}_map`"));
+            }
+        }
+        let scale = self.normal_scale.unwrap_or(1.0);
+        if let Some(map) = self.maps.normal.file().filter(|_| scale != 0.0) {
+            material.normal_map = textures.normals(map, warnings).map(|texture| NormalMap { texture, scale });
+        }
+        let scale = self.bump_scale.unwrap_or(1.0);
+        let Some(map) = self.maps.bump.file().filter(|_| scale != 0.0) else { return };
+        match textures.relief(map, self.bump_word != BumpWord::Key, warnings) {
+            None => {}
+            Some(Relief::Heights(texture)) => {
+                if textures.shows_normals(texture) {
+                    warnings.push(format!(
+                        "{}: material `{name}`: the image of `bump_map` looks like a map of normals, which is `normal_map`; it is taken as heights",
+                        map.at
+                    ));
+                }
+                material.bump_map = Some(BumpMap { texture, scale });
+            }
+            Some(Relief::Normals(texture)) if material.normal_map.is_none() => {
+                if self.bump_word == BumpWord::Mtl {
+                    warnings.push(format!(
+                        "{}: material `{name}`: the image of map_Bump looks like a map of normals and is taken as one, -bm as its strength; `norm` in \
+                         place of map_Bump says so",
+                        map.at
+                    ));
+                }
+                material.normal_map = Some(NormalMap { texture, scale });
+            }
+            Some(Relief::Normals(_)) if self.maps.normal.file().is_some_and(|normals| normals.is_same_file(map)) => {}
+            Some(Relief::Normals(_)) => warnings
+                .push(format!("{}: material `{name}`: map_Bump holds normals too, of which `norm` counts", map.at)),
+        }
     }
 
     /// The same of a metallic-roughness surface: a missing base colour is 0.8, but 1 with a map or under the colours of vertices. Only what no texel of its map
@@ -254,6 +331,7 @@ impl Draft {
             warnings.push(format!("material `{name}`: `one_sided` does nothing without `emission`"));
         }
         self.load_maps(&mut material, textures, warnings);
+        self.load_relief(&mut material, textures, warnings);
         if material.opacity == 0.0 {
             warnings.push(format!("material `{name}` has opacity 0 (d): its surfaces cannot be seen"));
         }

@@ -87,6 +87,9 @@ fn finish(scene: &mut Scene) -> Result<()> {
     scene.warnings.extend(merged);
     let parted = scene.part_touching_glass();
     scene.warnings.extend(parted);
+    // Of the triangles that there are now.
+    let untangled = scene.add_tangents();
+    scene.warnings.extend(untangled);
     // What was there twice may be gone by now.
     scene.warnings.extend(bodies::warnings(scene));
     alike::shorten(&mut scene.warnings);

@@ -47,6 +47,20 @@ pub(super) fn of_opacities(image: &ImageFile, opacity: impl Fn(usize) -> f32 + S
     Faults::sum(image, faults).in_words(image)
 }
 
+/// The same for heights.
+pub(super) fn of_heights(image: &ImageFile, height: impl Fn(usize) -> f32 + Send + Sync) -> Vec<String> {
+    if !image.is_float() {
+        return Vec::new();
+    }
+    let faults = |texel| {
+        let height = height(texel);
+        let large = height > f16::MAX.to_f32();
+        let largest = if height.is_finite() { height } else { 0.0 };
+        Faults { nan: usize::from(!height.is_finite()), large: usize::from(large), largest, ..Faults::default() }
+    };
+    Faults::sum(image, faults).in_words(image)
+}
+
 /// The same for numbers from 0 to 1, one a channel; of alpha nobody knows whether it is one.
 pub(super) fn of_numbers(image: &ImageFile, numbers: impl Fn(usize) -> [f32; 4] + Send + Sync) -> Vec<String> {
     if !image.is_float() {

@@ -3,12 +3,15 @@
 use super::{named_file, texel_faults};
 use crate::picture::decode::{CHUNK, ImageFile};
 use crate::scene::{ChannelMap, Texture};
-use glam::{Affine2, Vec2, Vec3};
+use glam::{Affine2, DVec3, Vec2, Vec3};
 use half::f16;
 use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+
+/// What happens where the file of a map cannot be used.
+const NO_MAP: &str = "there is no map then";
 
 /// Most texels of all textures of a scene together: 2 GiB as they are kept.
 const MOST_TEXELS: u64 = 1 << 28;
@@ -79,6 +82,19 @@ enum Kind {
     Shares,
     /// A number from 0 to 1 in red: the luminance of what is stored.
     Luminance,
+    /// Normals in tangent space: numbers as they are stored.
+    Normals,
+    /// Heights; unless the image evidently holds normals, if that may be.
+    Heights { channel: Channel, or_normals: bool },
+}
+
+/// What a map of heights turned out to be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Relief {
+    /// A texture of heights.
+    Heights(u32),
+    /// A texture of normals.
+    Normals(u32),
 }
 
 /// The textures loaded so far; one file with the same options is loaded once, wherever its maps place it.
@@ -88,6 +104,8 @@ pub(super) struct Textures {
     pub loaded: Vec<Arc<Texture>>,
     /// For each of them.
     ranges: Vec<Range>,
+    /// Whether it evidently holds normals in tangent space.
+    normals: Vec<bool>,
     /// Their texels.
     texels: u64,
     by_key: HashMap<Key, Option<u32>>,
@@ -167,7 +185,7 @@ impl Textures {
 
     /// The same, but none if the file cannot be used.
     pub(super) fn optional(&mut self, map: &MapFile, warnings: &mut Vec<String>) -> Option<u32> {
-        self.load(map, map.colours(), "there is no map then", warnings).map(|texture| self.placed(texture, map))
+        self.load(map, map.colours(), NO_MAP, warnings).map(|texture| self.placed(texture, map))
     }
 
     /// The texture of a map that multiplies a number, and its channel: the one that is asked for, or luminance, as Blender makes a number of a colour. None if
@@ -177,19 +195,36 @@ impl Textures {
             Channel::One(channel) => (Kind::Shares, channel),
             Channel::Any | Channel::Luminance => (Kind::Luminance, 0),
         };
-        let texture = self.load(map, kind, "there is no map then", warnings)?;
+        let texture = self.load(map, kind, NO_MAP, warnings)?;
         Some(ChannelMap { texture: self.placed(texture, map), channel })
     }
 
     /// The texture of a map whose channels are three numbers. None if the file cannot be used, which is a warning.
     pub(super) fn numbers(&mut self, map: &MapFile, warnings: &mut Vec<String>) -> Option<u32> {
-        self.load(map, Kind::Shares, "there is no map then", warnings).map(|texture| self.placed(texture, map))
+        self.load(map, Kind::Shares, NO_MAP, warnings).map(|texture| self.placed(texture, map))
+    }
+
+    /// The texture of a map of normals. None if the file cannot be used, which is a warning.
+    pub(super) fn normals(&mut self, map: &MapFile, warnings: &mut Vec<String>) -> Option<u32> {
+        self.load(map, Kind::Normals, NO_MAP, warnings).map(|texture| self.placed(texture, map))
+    }
+
+    /// The texture of a map of heights, or of normals if the image evidently holds such and `or_normals` lets it. None if the file cannot be used, which is a warning.
+    pub(super) fn relief(&mut self, map: &MapFile, or_normals: bool, warnings: &mut Vec<String>) -> Option<Relief> {
+        let kind = Kind::Heights { channel: map.channel, or_normals };
+        let texture = self.load(map, kind, NO_MAP, warnings).map(|texture| self.placed(texture, map))?;
+        let normals = or_normals && self.normals[texture as usize];
+        Some(if normals { Relief::Normals(texture) } else { Relief::Heights(texture) })
+    }
+
+    /// Whether the image of a loaded map of heights or normals evidently holds normals in tangent space.
+    pub(super) fn shows_normals(&self, texture: u32) -> bool {
+        self.normals[texture as usize]
     }
 
     /// The texture of a map whose alpha is an opacity. None if the file cannot be used, which is a warning.
     pub(super) fn opacity(&mut self, map: &MapFile, warnings: &mut Vec<String>) -> Option<u32> {
-        self.load(map, Kind::Opacity(map.channel), "there is no map then", warnings)
-            .map(|texture| self.placed(texture, map))
+        self.load(map, Kind::Opacity(map.channel), NO_MAP, warnings).map(|texture| self.placed(texture, map))
     }
 
     /// A loaded texture where the map wants it: another one with the same texels, unless it is there already.
@@ -203,6 +238,7 @@ impl Textures {
         *self.by_place.entry((texture, bits)).or_insert_with(|| {
             self.loaded.push(Texture { transform, ..Texture::clone(&source) }.into());
             self.ranges.push(self.ranges[texture as usize]);
+            self.normals.push(self.normals[texture as usize]);
             self.loaded.len() as u32 - 1
         })
     }
@@ -221,6 +257,7 @@ impl Textures {
             let texels: Vec<_> = (0..SIDE * SIDE).map(colour).collect();
             let name = "(missing texture)".into();
             self.ranges.push(Range::of(&texels));
+            self.normals.push(false);
             let texels = texels.into();
             self.loaded.push(Texture { name, width: SIDE, height: SIDE, texels, ..Texture::default() }.into());
             self.loaded.len() as u32 - 1
@@ -253,6 +290,13 @@ impl Textures {
         if let Some(texture) = self.by_key.get(&key) {
             return *texture;
         }
+        // One that is there already as normals.
+        if let Kind::Heights { or_normals: true, .. } = kind
+            && let Some(Some(texture)) = self.by_key.get(&Key { kind: Kind::Normals, ..key.clone() })
+            && self.normals[*texture as usize]
+        {
+            return Some(*texture);
+        }
         let too_many = |texels| {
             format!(
                 "with its {texels} texels the textures of the scene would have more than {MOST_TEXELS}: make them smaller"
@@ -261,7 +305,13 @@ impl Textures {
         let texture = match ImageFile::open(&path, MOST_TEXELS - self.texels, too_many) {
             Ok(image) => {
                 self.texels += image.len() as u64;
-                let (texels, faults) = texels(&image, map, kind);
+                let normals = matches!(kind, Kind::Normals | Kind::Heights { .. }) && holds_normals(&image);
+                let found = match kind {
+                    Kind::Heights { or_normals: true, .. } if normals => Kind::Normals,
+                    found => found,
+                };
+                let (texels, faults) = texels(&image, map, found);
+                self.normals.push(normals);
                 for fault in image.warnings.iter().cloned().chain(faults) {
                     if self.said.insert(format!("{} {fault}", path.display())) {
                         warnings.push(format!("{}: the texture {}: {fault}", map.at, path.display()));
@@ -270,6 +320,9 @@ impl Textures {
                 if !image.is_premultiplied() {
                     // Then there is nothing to divide, and both are one.
                     self.by_key.insert(Key { straight: !key.straight, ..key.clone() }, Some(self.loaded.len() as u32));
+                }
+                if found != kind {
+                    self.by_key.insert(Key { kind: found, ..key.clone() }, Some(self.loaded.len() as u32));
                 }
                 let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
                 let (width, height) = (image.width, image.height);
@@ -318,13 +371,7 @@ fn texels(image: &ImageFile, map: &MapFile, kind: Kind) -> (Vec<[f16; 4]>, Vec<S
             (all(&colour), texel_faults::of_colours(image, false, range))
         }
         Kind::Opacity(channel) => {
-            let value = |texel| {
-                let stored = image.stored(texel);
-                range(match channel {
-                    Channel::One(index) => stored[usize::from(index)],
-                    Channel::Any | Channel::Luminance => luminance(stored),
-                })
-            };
+            let value = |texel| range(scalar_of(image.stored(texel), channel));
             let scalar = |texel| [f16::ONE, f16::ONE, f16::ONE, opacity(value(texel))];
             (all(&scalar), texel_faults::of_opacities(image, value))
         }
@@ -340,7 +387,53 @@ fn texels(image: &ImageFile, map: &MapFile, kind: Kind) -> (Vec<[f16; 4]>, Vec<S
             };
             (all(&grey), texel_faults::of_numbers(image, |texel| [number(texel); 4]))
         }
+        Kind::Normals => {
+            let normal = |texel| {
+                let [r, g, b, _] = image.stored(texel).map(|value| half(range(value)));
+                [r, g, b, f16::ONE]
+            };
+            (all(&normal), texel_faults::of_numbers(image, |texel| image.stored(texel).map(range)))
+        }
+        Kind::Heights { channel, .. } => heights(image, |texel| range(scalar_of(image.stored(texel), channel))),
     }
+}
+
+fn scalar_of(stored: [f32; 4], channel: Channel) -> f32 {
+    match channel {
+        Channel::One(index) => stored[usize::from(index)],
+        Channel::Any | Channel::Luminance => luminance(stored),
+    }
+}
+
+/// Heights as the sum of two half floats, which have 22 bits between them: slopes are differences of neighbours. Only differences count, so that the least one becomes 0
+/// where it is negative.
+fn heights(image: &ImageFile, value: impl Fn(usize) -> f32 + Send + Sync) -> (Vec<[f16; 4]>, Vec<String>) {
+    let finite = |texel| Some(value(texel)).filter(|height| height.is_finite()).unwrap_or(0.0);
+    let all = || (0..image.len()).into_par_iter().with_min_len(CHUNK);
+    let least = all().map(finite).reduce(|| 0.0, f32::min);
+    let texel = |texel| {
+        let height = finite(texel) - least;
+        let upper = half(height);
+        // Rounded down, so that the rest is not negative.
+        let upper = if upper.to_f32() > height { f16::from_bits(upper.to_bits() - 1) } else { upper };
+        [upper, half(height - upper.to_f32()), f16::ZERO, f16::ONE]
+    };
+    let texels = all().map(texel).collect();
+    (texels, texel_faults::of_heights(image, |texel| value(texel) - least))
+}
+
+/// Whether an image evidently holds normals in tangent space: on the whole they point upwards, which is light blue, and nearly all are of unit length.
+fn holds_normals(image: &ImageFile) -> bool {
+    let all = (0..image.len()).into_par_iter().with_min_len(CHUNK).map(|texel| {
+        let [r, g, b, _] = image.stored(texel);
+        let stored = Vec3::new(r, g, b);
+        let unit = (2.0 * stored - 1.0).length();
+        (stored.as_dvec3(), u64::from((0.85..=1.15).contains(&unit)))
+    });
+    let (sum, unit) = all.reduce(|| (DVec3::ZERO, 0), |a, b| (a.0 + b.0, a.1 + b.1));
+    let [r, g, b] = (sum / image.len() as f64).to_array();
+    let level = |x: f64| (0.4..=0.6).contains(&x);
+    level(r) && level(g) && b >= 0.75 && unit * 10 >= 9 * image.len() as u64
 }
 
 /// The luminance of linear sRGB primaries (ITU-R BT.709); the weights' sum is 1 even in single precision, so white is 1.

@@ -255,7 +255,9 @@ fn further(a: f64, b: f64) -> f64 {
 
 /// The mesh of an object after its changes, which are in object space.
 fn edited(mesh: &Mesh, object: &Object, edits: &ObjectEdits, pulled: &Pulled) -> Mesh {
-    let mut new = Mesh { triangles: Vec::with_capacity(mesh.triangles.len()), ..mesh.clone() };
+    // Tangents, which follow the triangles, are made afterwards.
+    let triangles = Vec::with_capacity(mesh.triangles.len());
+    let mut new = Mesh { triangles, tangents: Vec::new(), ..mesh.clone() };
     let own_materials = edits.changes_materials();
     let by = |index: u32| {
         let distance = edits.moved.get(&index).copied().unwrap_or(0.0);

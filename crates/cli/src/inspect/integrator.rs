@@ -53,7 +53,8 @@ pub fn describe(integrator: &Integrator) -> String {
         Some(1) => "at most 1 indirect bounce".into(),
         Some(n) => format!("at most {n} indirect bounces"),
     };
-    format!("path tracer{preset}: {light}{area}{choice}, {directions}, {extinction}{threshold}, {bounces}")
+    let terminator = if estimator.smooth_terminator { ", smooth terminator" } else { "" };
+    format!("path tracer{preset}: {light}{area}{choice}, {directions}, {extinction}{threshold}, {bounces}{terminator}")
 }
 
 #[cfg(test)]

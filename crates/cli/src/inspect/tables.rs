@@ -6,7 +6,7 @@ use luminaire::scene::{Environment, LightTree, Luminaire, LuminaireTable, Materi
 
 /// Meshes and what they have.
 pub(super) fn meshes(scene: &Scene) -> Vec<Vec<String>> {
-    let head = ["name", "triangles", "vertices", "normals", "texture coordinates", "vertex colours"]
+    let head = ["name", "triangles", "vertices", "normals", "texture coordinates", "vertex colours", "tangents"]
         .map(String::from)
         .to_vec();
     let mesh = |m: &Mesh| {
@@ -18,6 +18,7 @@ pub(super) fn meshes(scene: &Scene) -> Vec<Vec<String>> {
             yes(m.normals.is_empty()),
             yes(m.uvs.is_empty()),
             yes(m.colours.is_empty()),
+            yes(m.tangents.is_empty()),
         ]
     };
     std::iter::once(head).chain(scene.meshes.iter().map(|m| mesh(m))).collect()
@@ -108,6 +109,13 @@ fn besides(scene: &Scene, m: &Material) -> String {
         if let Some(map) = map {
             parts.push(format!("{name} map {}", scene.textures[map as usize].name));
         }
+    }
+    let scaled = |scale: f32| if scale == 1.0 { String::new() } else { format!(" times {scale}") };
+    if let Some(map) = m.normal_map {
+        parts.push(format!("normal map {}{}", scene.textures[map.texture as usize].name, scaled(map.scale)));
+    }
+    if let Some(map) = m.bump_map {
+        parts.push(format!("bump map {}{}", scene.textures[map.texture as usize].name, scaled(map.scale)));
     }
     if parts.is_empty() { "-".into() } else { parts.join("; ") }
 }

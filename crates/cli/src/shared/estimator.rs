@@ -53,6 +53,9 @@ pub struct EstimatorOptions {
     /// At most so many indirect bounces; 0 is direct light alone.
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(..=i64::from(Estimator::MOST_BOUNCES)))]
     pub max_bounces: Option<u32>,
+    /// Light coarse meshes with vertex normals as the smooth surfaces that they stand for, without steps at the edges of their own shadows: a bias.
+    #[arg(long)]
+    pub smooth_terminator: bool,
     /// Where the random numbers come from: independent, or sobol (less noise) [default: the scene's].
     #[arg(long, value_name = "NAME", value_parser = named::<Sampler>)]
     pub sampler: Option<Sampler>,
@@ -96,6 +99,7 @@ impl EstimatorOptions {
             extinction: self.extinction,
             albedo_threshold: self.albedo_threshold,
             max_bounces: self.max_bounces,
+            smooth_terminator: self.smooth_terminator.then_some(true),
         }
     }
 
@@ -109,6 +113,7 @@ impl EstimatorOptions {
             ("--extinction", self.extinction.is_some()),
             ("--albedo-threshold", self.albedo_threshold.is_some()),
             ("--max-bounces", self.max_bounces.is_some()),
+            ("--smooth-terminator", self.smooth_terminator),
         ]
         .into_iter()
         .find_map(|(name, given)| given.then_some(name))

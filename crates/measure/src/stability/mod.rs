@@ -36,6 +36,7 @@ pub const SWEEPS: &[Definition] = &[
     sweeps::anisotropy::DEFINITION,
     sweeps::rough_index::DEFINITION,
     sweeps::absorption::DEFINITION,
+    sweeps::grazing::DEFINITION,
     sweeps::luminaire::DEFINITION,
     sweeps::edge_on::DEFINITION,
     sweeps::spot::DEFINITION,

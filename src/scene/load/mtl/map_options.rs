@@ -9,6 +9,8 @@ use std::path::Path;
 pub(super) struct MapStatement {
     /// The map.
     pub map: MapFile,
+    /// `-bm`.
+    pub multiplier: Option<f32>,
     /// Options that would change the picture and are not modelled.
     pub ignored: Vec<&'static str>,
     /// What else is to be said of the options, in words.
@@ -22,7 +24,7 @@ pub(super) struct MapStatement {
 pub(super) fn parse(rest: &str, folder: &Path, at: String) -> Result<MapStatement, String> {
     let mut reader = Reader { rest: rest.trim() };
     let mut map = MapFile::plain(Vec::new(), folder, at);
-    let (mut ignored, mut notes) = (Vec::new(), Vec::new());
+    let (mut ignored, mut notes, mut multiplier) = (Vec::new(), Vec::new(), None);
     let mut ignore = |option, changes: bool| {
         if changes && !ignored.contains(&option) {
             ignored.push(option);
@@ -36,8 +38,9 @@ pub(super) fn parse(rest: &str, folder: &Path, at: String) -> Result<MapStatemen
             "-blendu" | "-blendv" | "-cc" | "-texres" => {
                 reader.word();
             }
-            "-bm" | "-boost" => {
-                reader.number().ok_or_else(|| format!("{option} needs a number"))?;
+            "-bm" => multiplier = Some(reader.number().ok_or("-bm needs a number")?),
+            "-boost" => {
+                reader.number().ok_or("-boost needs a number")?;
             }
             "-mm" => {
                 let numbers = (reader.number(), reader.number());
@@ -88,7 +91,7 @@ pub(super) fn parse(rest: &str, folder: &Path, at: String) -> Result<MapStatemen
         map.names.push(inner.to_owned());
     }
     map.names.retain(|name| !name.is_empty());
-    Ok(MapStatement { map, ignored, notes })
+    Ok(MapStatement { map, multiplier, ignored, notes })
 }
 
 /// The first two of one to three numbers, the second being `missing` if there is none; none if one is too large.

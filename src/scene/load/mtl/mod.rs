@@ -11,7 +11,7 @@ mod words;
 
 pub(super) use named_files::named_files;
 
-use super::material_draft::{Draft, ETAS, LARGEST_EXPONENT, MapDraft};
+use super::material_draft::{BumpWord, Draft, ETAS, LARGEST_EXPONENT, MapDraft};
 use super::text_file::{Tally, logical_lines, read_text, shortened};
 use crate::Result;
 use blender::Blender;
@@ -32,8 +32,9 @@ pub(super) struct Library {
     pub note: Option<String>,
 }
 
-/// Reads an MTL file: `Ka Kd Ks Ns Ke Ni Tf d Tr illum` and the maps of the colours and of `d`, and `Pr Pm Ps Pc Pcr aniso anisor` with their maps. What `illum`
-/// makes of the former, and what makes a metallic-roughness surface of a material, are tables in `scenes/README.md`.
+/// Reads an MTL file: `Ka Kd Ks Ns Ke Ni Tf d Tr illum` with the maps of the colours and of `d`, those that bend normals (`map_Bump`, `bump`, `norm`), and
+/// `Pr Pm Ps Pc Pcr aniso anisor` with their maps. What `illum` makes of the first, and what makes a metallic-roughness surface of a material, are tables in
+/// `scenes/README.md`.
 ///
 /// # Errors
 /// Only if the file cannot be read at all.
@@ -140,6 +141,7 @@ impl Reader<'_> {
                 None => self.warn("illum needs a number from 0 to 10; ignored"),
             },
             "Km" | "Kt" | "sharpness" => {}
+            "bump" | "norm" => self.map(keyword, rest, &mut current),
             "Pr" | "Pm" | "Ps" | "Pc" | "Pcr" | "aniso" | "anisor" => {
                 // Blender's coat of 4 is one of 1.
                 let most = if keyword == "Pc" && self.blender.is_some() { 4.0 } else { 1.0 };
@@ -147,7 +149,7 @@ impl Reader<'_> {
                 current.words.state(keyword, number);
             }
             "refl" if self.blender.is_some() => self.map("map_refl", rest, &mut current),
-            "bump" | "disp" | "decal" | "refl" | "norm" => current.ignore(shortened(keyword).into_owned()),
+            "disp" | "decal" | "refl" => current.ignore(shortened(keyword).into_owned()),
             map if map.to_ascii_lowercase().starts_with("map_") => self.map(map, rest, &mut current),
             other => {
                 if self.unknown_keyword.is_empty() {
@@ -169,6 +171,8 @@ impl Reader<'_> {
             "map_ks" => &mut maps.glossy,
             "map_ke" => &mut maps.emission,
             "map_d" => &mut maps.opacity,
+            "map_bump" | "bump" => &mut maps.bump,
+            "norm" | "map_kn" => &mut maps.normal,
             _ => match current.words.map(&name, self.blender.is_some()) {
                 Some(map) => map,
                 None => return current.ignore(shortened(keyword).into_owned()),
@@ -178,6 +182,15 @@ impl Reader<'_> {
         match map_options::parse(rest, folder, format!("{}:{}", self.path.display(), self.line)) {
             Ok(statement) => {
                 *map = MapDraft::File(statement.map);
+                match name.as_str() {
+                    "map_bump" | "bump" => {
+                        current.draft.bump_scale = statement.multiplier;
+                        let blender = self.blender.is_some();
+                        current.draft.bump_word = if blender { BumpWord::Blender } else { BumpWord::Mtl };
+                    }
+                    "norm" | "map_kn" => current.draft.normal_scale = statement.multiplier,
+                    _ => {}
+                }
                 for option in statement.ignored {
                     current.ignore(format!("{keyword} {option}"));
                 }

@@ -2,6 +2,7 @@
 
 use super::maps::map_line;
 use super::physical;
+use super::relief;
 use super::words::{number, quoted, triple};
 use crate::Result;
 use crate::scene::load::material_draft::{Draft, MapDraft};
@@ -20,6 +21,10 @@ const KEYS: &str = "\
 #   reflection          albedo of a mirror; with `eta` it lies over the rest, as varnish does
 #   transmission, eta   albedo of what passes into glass, and its index of refraction, 0.01 to 100; `thin = true`: a pane, which bends nothing
 #   opacity             share of light that meets the surface at all, 0 (a hole) to 1
+#   normal_map, normal_scale
+#                       an image of normals in tangent space (OpenGL's: green is up), and a factor to what they have along the surface
+#   bump_map, bump_scale
+#                       an image of heights, and the length of a height of 1
 #   ambient             albedo for the ambient term of the simple ray tracer
 #   impulse_probability above 0 and below 1: how often a path takes the mirror or glass; changes the noise, never the mean
 #   diffuse_map, glossy_map, emission_map, ambient_map, opacity_map
@@ -142,5 +147,5 @@ fn table(material: &Material, draft: &Draft, folder: &Path) -> Result<String> {
             text += &map_line(name, map, name == "opacity_map", folder)?;
         }
     }
-    Ok(text)
+    Ok(text + &relief::lines(m, draft, folder)?)
 }

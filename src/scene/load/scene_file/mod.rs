@@ -4,6 +4,7 @@ mod groups;
 mod maps;
 mod materials;
 mod physical;
+mod relief;
 mod words;
 
 use super::bare_mesh::{self, BareMesh, Z_UP};
@@ -196,6 +197,7 @@ const INTEGRATOR: &str = "
 # directions = \"bsdf\"                    # \"uniform\", \"cosine\", \"bsdf\"
 # extinction = \"throughput\"              # how chance ends a path: \"off\", \"literal\", \"surface\", \"throughput\"
 # albedo_threshold = 0                   # a path whose combined albedo falls below this ends, 0 to 1
+# smooth_terminator = false              # true: coarse meshes with vertex normals are lit as the smooth surfaces that they stand for: a bias
 # max_bounces = 1000000                  # at most so many indirect bounces, 0 to 1000000; without it no limit
 ";
 

@@ -1,6 +1,7 @@
 //! The keys of a metallic-roughness material.
 
 use super::maps::map_line;
+use super::relief;
 use super::words::{exact, number, quoted, triple};
 use crate::Result;
 use crate::scene::load::material_draft::{Draft, MapDraft};
@@ -83,5 +84,5 @@ pub(super) fn table(
             text += &map_line(name, map, of_a_number, folder)?;
         }
     }
-    Ok(text)
+    Ok(text + &relief::lines(m, draft, folder)?)
 }

@@ -384,8 +384,18 @@ pub(super) const KEYS: &[Words] = &[
     ),
     (
         "material",
-        &["bump", "bump_map", "normal_map", "normalmap", "normal", "displacement", "height"],
-        "bump maps and displacement are not modelled: leave it out, or make the mesh finer",
+        &["bump", "map_bump", "height", "height_map", "heightmap", "bumpmap", "bump_texture"],
+        "an image of heights is `bump_map`, with the length of a height of 1 as `bump_scale`",
+    ),
+    (
+        "material",
+        &["normal", "norm", "normalmap", "normal_texture", "map_kn"],
+        "an image of normals is `normal_map`, with its strength as `normal_scale`",
+    ),
+    (
+        "material",
+        &["displacement", "displacement_map", "disp"],
+        "displacement is not modelled: `bump_map` bends the normals alone, or make the mesh finer",
     ),
     (
         "material",

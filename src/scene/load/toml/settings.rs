@@ -198,6 +198,7 @@ impl File<'_> {
             extinction: table.extinction.as_ref().map(|part| *part.get_ref()),
             albedo_threshold: table.albedo_threshold.as_ref().map(|part| part.get_ref().0),
             max_bounces: table.max_bounces.as_ref().map(|part| part.get_ref().0),
+            smooth_terminator: table.smooth_terminator.as_ref().map(|part| *part.get_ref()),
         };
         let estimator = changes.apply(estimator);
         for key in changes.without_effect(&estimator) {
@@ -213,7 +214,7 @@ impl File<'_> {
 }
 
 /// The keys that belong to the path tracer alone.
-fn parts(table: &IntegratorTable) -> [(&'static str, Option<Range<usize>>); 7] {
+fn parts(table: &IntegratorTable) -> [(&'static str, Option<Range<usize>>); 8] {
     [
         ("light_sampling", table.light_sampling.as_ref().map(Spanned::span)),
         ("area_sampling", table.area_sampling.as_ref().map(Spanned::span)),
@@ -222,5 +223,6 @@ fn parts(table: &IntegratorTable) -> [(&'static str, Option<Range<usize>>); 7] {
         ("extinction", table.extinction.as_ref().map(Spanned::span)),
         ("albedo_threshold", table.albedo_threshold.as_ref().map(Spanned::span)),
         ("max_bounces", table.max_bounces.as_ref().map(Spanned::span)),
+        ("smooth_terminator", table.smooth_terminator.as_ref().map(Spanned::span)),
     ]
 }

@@ -134,6 +134,7 @@ pub(super) struct IntegratorTable {
     pub extinction: Option<Spanned<Extinction>>,
     pub albedo_threshold: Option<Spanned<Unit>>,
     pub max_bounces: Option<Spanned<Bounces>>,
+    pub smooth_terminator: Option<Spanned<bool>>,
 }
 
 #[derive(Deserialize, Clone, Copy, PartialEq, Eq)]
@@ -190,11 +191,15 @@ pub(super) struct MaterialTable {
     pub thin: Option<bool>,
     pub impulse_probability: Option<Probability>,
     pub opacity: Option<Unit>,
+    pub normal_scale: Option<Spanned<Finite>>,
+    pub bump_scale: Option<Spanned<Finite>>,
     pub ambient_map: Option<Spanned<MapEntry>>,
     pub diffuse_map: Option<Spanned<MapEntry>>,
     pub glossy_map: Option<Spanned<MapEntry>>,
     pub emission_map: Option<Spanned<MapEntry>>,
     pub opacity_map: Option<Spanned<MapEntry>>,
+    pub normal_map: Option<Spanned<MapEntry>>,
+    pub bump_map: Option<Spanned<MapEntry>>,
     pub model: Option<Model>,
     pub base_colour: Option<Albedo>,
     pub metallic: Option<Unit>,

@@ -12,6 +12,7 @@ pub mod extinction;
 pub mod gaps;
 pub mod glossy;
 pub mod glossy_caustics;
+pub mod grazing;
 pub mod instances;
 pub mod luminaire;
 pub mod many;
