@@ -28,6 +28,12 @@ REFERENCE = ["--test", "reference"]
 LIBRARY = ["--lib"]
 KERNEL = ["--test", "gpu", "--", "--skip", "fallback"]
 
+
+def kernel(test):
+    """The tests of the kernel of this name, first: all of them take minutes."""
+    return ["--test", "gpu", "--", test]
+
+
 # Name, file, what stands there (once), what the bug makes of it, and which tests are to notice.
 MUTATIONS = [
     ("missing cosine", "shaders/luminaire.glsl",
@@ -136,12 +142,12 @@ MUTATIONS = [
     ("reference: missing 1/pi", "src/reference/bsdf.rs",
      "self.lambert / PI", "self.lambert", [CLOSED_FORMS, REFERENCE]),
     ("another order in the kernel", "shaders/rng.glsl",
-     "seeds.zx ^ seeds.wy", "seeds.xz ^ seeds.yw", [KERNEL]),
+     "seeds.zx ^ seeds.wy", "seeds.xz ^ seeds.yw", [kernel("sensor::numbers"), KERNEL]),
     ("groups that begin with the batch", "shaders/path_trace.comp",
      "uint start = (batch.first_sample / batch.group + id.z * GROUPS_IN_TURN) * batch.group;",
-     "uint start = batch.first_sample + id.z * GROUPS_IN_TURN * batch.group;", [KERNEL]),
+     "uint start = batch.first_sample + id.z * GROUPS_IN_TURN * batch.group;", [kernel("pictures::the_partition"), KERNEL]),
     ("samples of two groups in one", "shaders/path_trace.comp",
-     "uint group_end = min(batch.group - (first - start), count);", "uint group_end = min(batch.group, count);", [KERNEL]),
+     "uint group_end = min(batch.group - (first - start), count);", "uint group_end = min(batch.group, count);", [kernel("pictures::the_partition"), KERNEL]),
     ("samples left out still count", "src/film/mod.rs",
      "taken - self.dropped.get(&(pixel, place)).unwrap_or(&0)", "taken", [["--lib", "film"]]),
     ("blocks that begin with the film", "src/film/blocks.rs",
