@@ -869,8 +869,9 @@ def brushed(out):
     board = Obj("A plate that was brushed in straight lines along u, which is its x axis: 2.4 x 1.2, standing.", mapped=True)
     w, h, t = 1.2, 1.2, 0.05
     board.part("plate", None, quad((-w, 0, t), (w, 0, t), (w, h, t), (-w, h, t)))
-    board.part("sides", None, Shape([(w, 0, t), (w, 0, -t), (w, h, -t), (w, h, t), (-w, h, t), (-w, h, -t), (-w, 0, -t), (-w, 0, t)],
-                                    [[0, 1, 2, 3], [3, 2, 5, 4], [4, 5, 6, 7], [1, 6, 5, 2]], [(0, 0), (1, 0), (1, 1), (0, 1), (0, 1), (1, 1), (1, 0), (0, 0)]))
+    corners = [(w, 0, t), (w, 0, -t), (w, h, -t), (w, h, t), (-w, h, t), (-w, h, -t), (-w, 0, -t), (-w, 0, t)]
+    # Coordinates that no side sees from the edge.
+    board.part("sides", None, Shape(corners, [[0, 1, 2, 3], [3, 2, 5, 4], [4, 5, 6, 7], [1, 6, 5, 2]], [(x + 2 * z, y + z) for x, y, z in corners]))
     board.write(out / "brushed" / "plate.obj")
 
 

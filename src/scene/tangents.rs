@@ -43,7 +43,7 @@ impl Scene {
             if without > 0 {
                 let (noun, have) = if without == 1 { ("triangle", "has") } else { ("triangles", "have") };
                 warnings.push(format!(
-                    "{}: {without} {noun} of {} {have} texture coordinates without an area: no normal map shows there",
+                    "{}: {without} {noun} of {} {have} texture coordinates without an area: no normal map or brushing shows there",
                     mesh.name,
                     mesh.triangles.len()
                 ));
