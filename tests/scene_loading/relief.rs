@@ -201,7 +201,10 @@ fn what_can_show_no_normals_is_said() {
     assert!(bare.meshes[0].tangents.is_empty());
     let mesh = "mtllib mesh.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\nf 2/2 4/2 3/2\nf 2/1 4/2 3/2\n";
     let flat = obj(mesh).with("mesh.mtl", mtl).image("n.png", blue()).load("mesh.obj");
-    warned(&flat, &["2 triangles of 3 have texture coordinates without an area: no normal map or brushing shows there"]);
+    warned(
+        &flat,
+        &["2 triangles of 3 have texture coordinates without an area: no normal map or brushing shows there"],
+    );
     assert!(
         flat.meshes[0].tangents[..3].iter().all(|t| t.w != 0.0)
             && flat.meshes[0].tangents[3..].iter().all(|t| t.w == 0.0)
