@@ -235,7 +235,7 @@ fn scene_files() {
         (MATERIAL, "alpha = 0.5\n", &["`opacity`"]),
         (MATERIAL, "emission_strength = 5\n", &["`emission`"]),
         (MATERIAL, "texture = \"wood.png\"\n", &["`diffuse_map`"]),
-        (MATERIAL, "normal_map = \"n.png\"\n", &["not modelled"]),
+        (MATERIAL, "displacement_map = \"n.png\"\n", &["not modelled"]),
         (MATERIAL, "type = \"diffuse\"\n", &["no kind"]),
         (OBJECT, "position = [0, 1, 0]\n", &["`translate`"]),
         (OBJECT, "rotation = [0, 90, 0]\n", &["`rotate`"]),
