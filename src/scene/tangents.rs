@@ -9,6 +9,10 @@ use std::sync::Arc;
 impl Scene {
     /// The scene with the tangents that it needs: itself, if they are there already, as they are in one that was loaded.
     pub(crate) fn with_tangents(&self) -> Cow<'_, Scene> {
+        // Most scenes need none: they are not copied to find that out.
+        if !self.materials.iter().any(Material::needs_tangents) {
+            return Cow::Borrowed(self);
+        }
         let mut scene = self.clone();
         scene.add_tangents();
         let same = self.meshes.iter().zip(&scene.meshes).all(|(old, new)| Arc::ptr_eq(old, new));

@@ -48,57 +48,26 @@ pub(super) struct PhysicalDraftMaps {
     pub iridescence_thickness: MapDraft,
 }
 
+/// All fields of a [`PhysicalDraftMaps`], or of a reference to one. Does not compile where one is missing.
+macro_rules! all_of {
+    ($maps:expr) => {
+        all_of!($maps; metallic, roughness, anisotropy, specular, specular_color, transmission, clearcoat, clearcoat_roughness,
+                sheen_color, sheen_roughness, iridescence, iridescence_thickness)
+    };
+    ($maps:expr; $($map:ident),*) => {{
+        let PhysicalDraftMaps { $($map),* } = $maps;
+        [$($map),*]
+    }};
+}
+
 impl PhysicalDraftMaps {
     /// All of them.
     pub(super) fn all(&self) -> [&MapDraft; 12] {
-        let PhysicalDraftMaps { metallic, roughness, anisotropy, specular, specular_color, transmission, .. } = self;
-        let PhysicalDraftMaps { clearcoat, clearcoat_roughness, sheen_color, sheen_roughness, .. } = self;
-        let PhysicalDraftMaps { iridescence, iridescence_thickness, .. } = self;
-        [
-            metallic,
-            roughness,
-            anisotropy,
-            specular,
-            specular_color,
-            transmission,
-            clearcoat,
-            clearcoat_roughness,
-            sheen_color,
-            sheen_roughness,
-            iridescence,
-            iridescence_thickness,
-        ]
+        all_of!(self)
     }
 
     fn all_mut(&mut self) -> [&mut MapDraft; 12] {
-        let PhysicalDraftMaps {
-            metallic,
-            roughness,
-            anisotropy,
-            specular,
-            specular_color,
-            transmission,
-            clearcoat,
-            clearcoat_roughness,
-            sheen_color,
-            sheen_roughness,
-            iridescence,
-            iridescence_thickness,
-        } = self;
-        [
-            metallic,
-            roughness,
-            anisotropy,
-            specular,
-            specular_color,
-            transmission,
-            clearcoat,
-            clearcoat_roughness,
-            sheen_color,
-            sheen_roughness,
-            iridescence,
-            iridescence_thickness,
-        ]
+        all_of!(self)
     }
 }
 
