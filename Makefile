@@ -16,7 +16,7 @@ render: setup ## render the Cornell box to out/cornell.png and out/cornell.exr, 
 	@mkdir -p out
 	$(BIN) render scenes/cornell/cornell.toml -o out/cornell.png -o out/cornell.exr
 
-gallery: setup ## render the pictures of docs/gallery.md again (twenty minutes on two cores without a GPU)
+gallery: setup ## render the pictures of docs/gallery.md again (fifty minutes on two cores without a GPU)
 	scripts/gallery.sh
 
 stability: setup ## run every stability sweep again: docs/stability.md (LONG=1: finer steps, about ten times as long)

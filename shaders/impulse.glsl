@@ -15,6 +15,13 @@ bool is_coated(Material material) {
     return material.lambert != vec3(0.0) || (GLOSSY && material.glossy != vec3(0.0));
 }
 
+// With which a path goes on by an impulse, of this albedo beside what is scattered.
+float impulse_probability(Material material, float impulse, float scattered) {
+    if (impulse == 0.0) return 0.0;
+    if (scattered == 0.0) return 1.0;
+    return material.impulse_probability != BY_ALBEDOS ? material.impulse_probability : impulse / (impulse + scattered);
+}
+
 Impulses impulses(Surfel s, Material material, vec3 wo) {
     Impulses i = Impulses(vec3(0.0), vec3(0.0), s.shading_normal, 0.0, 0.0);
     if (!IMPULSES) return i;
@@ -35,12 +42,7 @@ Impulses impulses(Surfel s, Material material, vec3 wo) {
         i.reflected = l.impulse_reflection;
         // Microfacets may let through what the surface as a whole would not.
         i.transmitted = transmitted == vec3(0.0) ? vec3(0.0) : l.impulse_transmission;
-        float impulse = mean(i.reflected + i.transmitted);
-        float other = scattered_albedo(s.lobes);
-        if (impulse > 0.0) {
-            if (other == 0.0) i.probability = 1.0;
-            else i.probability = material.impulse_probability != BY_ALBEDOS ? material.impulse_probability : impulse / (impulse + other);
-        }
+        i.probability = impulse_probability(material, mean(i.reflected + i.transmitted), scattered_albedo(s.lobes));
         return i;
     }
     vec3 rest = material.lambert;
@@ -66,11 +68,6 @@ Impulses impulses(Surfel s, Material material, vec3 wo) {
         i.transmitted = material.transmission * (1.0 - f);
     }
     if (is_coated(material)) rest *= 1.0 - i.reflected;
-    float impulse = mean(i.reflected + i.transmitted);
-    float other = mean(rest);
-    if (impulse > 0.0) {
-        if (other == 0.0) i.probability = 1.0;
-        else i.probability = material.impulse_probability != BY_ALBEDOS ? material.impulse_probability : impulse / (impulse + other);
-    }
+    i.probability = impulse_probability(material, mean(i.reflected + i.transmitted), mean(rest));
     return i;
 }
