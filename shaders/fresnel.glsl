@@ -27,15 +27,19 @@ float thin_reflectance(float fresnel) { return 2.0 * fresnel / (1.0 + fresnel); 
 
 vec3 reflect_direction(vec3 wo, vec3 n) { return 2.0 * dot(wo, n) * n - wo; }
 
+vec3 over_sum(vec3 less, vec3 sum) { return mix(vec3(1.0), less / max(sum, 1e-30), greaterThan(sum, vec3(0.0))); }
+
 // Reflectance of a smooth metal with an index of refraction and an extinction coefficient for each channel, for unpolarised light.
 vec3 fresnel_conductor(vec3 eta, vec3 k, float cos_i) {
     float c2 = cos_i * cos_i;
     float s2 = 1.0 - c2;
-    vec3 t0 = eta * eta - k * k - s2;
+    // eta^2 - k^2 - s2, without its cancellation.
+    vec3 t0 = (eta - 1.0) * (eta + 1.0) - k * k + c2;
     vec3 ab = sqrt(t0 * t0 + 4.0 * eta * eta * k * k);
     vec3 a = sqrt(max(0.5 * (ab + t0), 0.0));
-    vec3 s = (ab + c2 - 2.0 * cos_i * a) / (ab + c2 + 2.0 * cos_i * a);
-    vec3 p = s * (c2 * ab + s2 * s2 - 2.0 * cos_i * s2 * a) / (c2 * ab + s2 * s2 + 2.0 * cos_i * s2 * a);
+    // No index at all, and grazing light on an index of 1, are limits.
+    vec3 s = over_sum(ab + c2 - 2.0 * cos_i * a, ab + c2 + 2.0 * cos_i * a);
+    vec3 p = s * over_sum(c2 * ab + s2 * s2 - 2.0 * cos_i * s2 * a, c2 * ab + s2 * s2 + 2.0 * cos_i * s2 * a);
     return 0.5 * (s + p);
 }
 

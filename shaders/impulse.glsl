@@ -29,13 +29,15 @@ Impulses impulses(Surfel s, Material material, vec3 wo) {
         Lobes l = s.lobes;
         bool clear = is_clear(l);
         i.eta = bend(l);
+        // One of a coat alone goes by the coat's normal.
+        if (CLEARCOATS && NORMAL_MAPS && !clear && !is_smooth(l.p)) i.normal = s.unbent_normal;
         vec3 transmitted = clear ? refract_direction(wo, i.normal, i.eta) : vec3(0.0);
         bool wrong = dot(reflect_direction(wo, i.normal), s.geometric_normal) <= 0.0;
         if (clear) wrong = wrong || dot(transmitted, s.geometric_normal) >= 0.0;
         if ((VERTEX_NORMALS || NORMAL_MAPS) && wrong) {
             i.normal = s.geometric_normal;
             if (clear) {
-                l = physical_lobes(l.p, i.normal, s.tangent.xyz, s.front, wo);
+                l = physical_lobes(l.p, i.normal, i.normal, s.tangent.xyz, s.front, wo);
                 transmitted = refract_direction(wo, i.normal, i.eta);
             }
         }

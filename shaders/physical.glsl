@@ -1,7 +1,8 @@
 // The metallic-roughness surface (twins: src/reference/physical.rs): how its layers share the light, what they are worth, which way they send a path.
 
-const float LEAST_ALPHA = 1e-4;     // narrower microfacets are impulses
+const float LEAST_ALPHA = 1.01e-4;  // narrower microfacets are impulses
 const float COAT_INDEX = 1.5;
+const float EDGE_COVARIANCE = 0.0117;
 const float LEAST_SHARE = 1e-6;     // what is divided by
 const float LEAST_COSINE = 1e-6;
 const float NARROW = 0.04;          // up to this width what microfacets send to each other is added to their reflectance, ...
@@ -58,13 +59,18 @@ struct Lobes {
     vec3 f0;                        // reflectance at normal incidence
     float normal;                   // Fresnel's
     vec3 many;                      // colour of what the dielectric reflects more than once
-    float passed;                   // by the coat
+    float clearcoat;                // strength of the coat on this side
+    float coat_alpha;
+    vec3 coat_normal;               // in the surface's frame; maps that bend the surface's do not bend it
+    vec3 coat_wo;                   // about it
+    float passed;                   // by the coat, towards wo
     vec3 diffuse;
     vec3 multiple;                  // of the lobe of later reflections, but for what is missing at wi
     vec3 again;                     // what of them is added to the reflectance of microfacets instead
     float reflected;
     vec3 transmitted;
     bool straight;                  // what is transmitted is an impulse
+    bool flat_facets;               // the same, though the microfacets are not smooth: all goes by the reflectance at wo
     vec3 impulse_reflection;
     vec3 impulse_transmission;
     vec3 shares;                    // albedos, about: cosine lobes, microfacets, coat
@@ -211,24 +217,34 @@ float edge_average(int rows, float alpha) {
 // The colour of light that has met microfacets of this mean reflectance more than once, when it leaves them.
 vec3 multiple_colour(vec3 average, float missing) { return average * average * (1.0 - missing) / (1.0 - average * missing); }
 
+// A dielectric's reflectance between that at normal incidence, f0, and that at grazing, by edge = (F - normal) / (1 - normal).
+vec3 edge_colour(vec3 f0, float f90, float normal, float edge) {
+    return edge < 0.0 ? f0 * (1.0 + edge * (1.0 - normal) / normal) : f0 + (f90 - f0) * edge;
+}
+
 // Reflectance of a microfacet of the dielectric.
 vec3 dielectric_reflectance(Lobes l, float cosine) {
     float f = fresnel(l.eta, min(cosine, 1.0));
     if (l.inside) return vec3(f);
-    return l.f0 + (l.p.specular - l.f0) * ((f - l.normal) / (1.0 - l.normal));
+    return edge_colour(l.f0, l.p.specular, l.normal, (f - l.normal) / (1.0 - l.normal));
 }
+
+// The width by which the dielectric's tables go.
+float dielectric_alpha(Lobes l) { return l.flat_facets ? 0.0 : l.alpha; }
 
 // The share that the dielectric reflects in all, seen at a cosine, where this much is missing; from inside only about.
 vec3 dielectric_albedo(Lobes l, float cosine, float missing) {
-    if (l.alpha == 0.0) return dielectric_reflectance(l, cosine);
+    if (dielectric_alpha(l) == 0.0) return dielectric_reflectance(l, cosine);
     vec4 share = dielectric_share(int(l.p.rows), cosine, l.alpha);
     if (l.inside) return vec3(1.0 - share.w / share.z);
-    return (1.0 - missing) * (l.f0 + (l.p.specular - l.f0) * share.x) + missing * l.many;
+    return (1.0 - missing) * edge_colour(l.f0, l.p.specular, l.normal, share.x) + missing * l.many;
 }
 
 // The mean of that over directions in proportion to their cosine; from outside.
 vec3 dielectric_albedo_average(Lobes l, float missing) {
-    return (1.0 - missing) * l.f0 + (l.p.specular - l.f0) * edge_average(int(l.p.rows), l.alpha) + missing * l.many;
+    if (l.flat_facets) missing = 0.0;
+    float edge = edge_average(int(l.p.rows), dielectric_alpha(l));
+    return (1.0 - missing) * edge_colour(l.f0, l.p.specular, l.normal, edge / (1.0 - missing)) + missing * l.many;
 }
 
 // What a smooth coat reflects of even light.
@@ -249,31 +265,46 @@ float coat_albedo(float cosine, float alpha) {
     return (1.0 - lost) * (f0 + (1.0 - f0) * edge) + lost * coat_multiple(alpha);
 }
 
-// What the surface reflects and transmits of even light, about.
-vec3 hemispherical_albedo(Physical p) {
-    float x = edge_average(int(p.rows), 0.0);
-    vec3 f0 = normal_reflectance(p);
-    vec3 reflected = f0 + (p.specular - f0) * x;
-    vec3 base = mix(reflected + (1.0 - reflected) * p.base, metal_average(p), p.metallic);
-    if (!CLEARCOATS) return base;
-    float coat = p.clearcoat * coat_average();
-    return coat + (1.0 - coat) * base;
+// The mean of that over directions in proportion to their cosine.
+float coat_mean(float alpha) {
+    if (alpha < LEAST_ALPHA) return coat_average();
+    float lost = missing_average(alpha);
+    float f0 = fresnel(COAT_INDEX, 1.0);
+    return (1.0 - lost) * f0 + (1.0 - f0) * edge_average(coat_rows(), alpha) + lost * coat_multiple(alpha);
 }
 
-// Albedo as from straight above.
-vec3 normal_albedo(Physical p) {
-    vec3 f0 = normal_reflectance(p);
-    vec3 base = mix(f0 + (1.0 - f0) * p.base, metal(p, 1.0), p.metallic);
-    if (!CLEARCOATS) return base;
-    float coat = p.clearcoat * fresnel(COAT_INDEX, 1.0);
-    return coat + (1.0 - coat) * base;
+// The share of light from a direction above the surface that the coat lets in.
+float coat_passed(Lobes l, vec3 wi) {
+    if (!CLEARCOATS || l.clearcoat == 0.0) return 1.0;
+    return 1.0 - l.clearcoat * coat_albedo(clamp(dot(l.coat_normal, wi), LEAST_COSINE, 1.0), l.coat_alpha);
 }
+
+// Into the coat's frame, its normal +z.
+vec3 to_coat(Lobes l, vec3 w) {
+    if (!NORMAL_MAPS) return w;
+    return vec3(dot(from_frame(l.coat_normal, vec3(1.0, 0.0, 0.0)), w), dot(from_frame(l.coat_normal, vec3(0.0, 1.0, 0.0)), w), dot(l.coat_normal, w));
+}
+
+// Albedo of the layers of a smooth surface, by what of each is reflected: of the dielectric by (F - F0) / (1 - F0).
+vec3 smooth_albedo(Physical p, float edge, vec3 metal, float coat) {
+    float f0 = p.ior == 0.0 ? 1.0 : fresnel(p.ior, 1.0);
+    vec3 reflected = edge_colour(normal_reflectance(p), p.specular, f0, edge);
+    vec3 base = mix(reflected + (1.0 - reflected) * p.base, metal, p.metallic);
+    if (!CLEARCOATS) return base;
+    return p.clearcoat * coat + (1.0 - p.clearcoat * coat) * base;
+}
+
+// What the surface reflects and transmits of even light, about.
+vec3 hemispherical_albedo(Physical p) { return smooth_albedo(p, edge_average(int(p.rows), 0.0), metal_average(p), CLEARCOATS ? coat_average() : 0.0); }
+
+// Albedo as from straight above.
+vec3 normal_albedo(Physical p) { return smooth_albedo(p, 0.0, metal(p, 1.0), fresnel(COAT_INDEX, 1.0)); }
 
 // Of what is scattered, about.
 float scattered_albedo(Lobes l) { return l.shares.x + l.shares.y + l.shares.z; }
 
-// The lobes of a surface about a normal towards wo; `tangent` in the world, `front`: on the outward side.
-Lobes physical_lobes(Physical p, vec3 normal, vec3 tangent, bool front, vec3 wo) {
+// The lobes of a surface about a normal towards wo; `coat_normal` and `tangent` in the world, `front`: on the outward side.
+Lobes physical_lobes(Physical p, vec3 normal, vec3 coat_normal, vec3 tangent, bool front, vec3 wo) {
     Lobes l;
     l.p = p;
     l.x = from_frame(normal, vec3(1.0, 0.0, 0.0));
@@ -298,17 +329,32 @@ Lobes physical_lobes(Physical p, vec3 normal, vec3 tangent, bool front, vec3 wo)
     bool body = ROUGH_TRANSMISSION && p.body != 0u;
     l.inside = body && !front;
     float index = index_of(p);
+    // What is hardly bent is hardly spread.
+    l.straight = !ROUGH_TRANSMISSION || impulse || (body && w.x * (index - 1.0) < LEAST_ALPHA);
+    l.flat_facets = ROUGH_TRANSMISSION && l.straight && !impulse;
     l.f0 = normal_reflectance(p);
-    vec3 average = l.f0 + (p.specular - l.f0) * edge_average(int(p.rows), 0.0);
-    l.many = multiple_colour(average, lost_average);
-    l.eta = l.inside ? 1.0 / index : index;
     l.normal = fresnel(index, 1.0);
+    vec3 average = edge_colour(l.f0, p.specular, l.normal, edge_average(int(p.rows), 0.0));
+    l.many = l.flat_facets ? vec3(0.0) : multiple_colour(average, lost_average);
+    l.eta = l.inside ? 1.0 / index : index;
     vec3 reflects = dielectric_albedo(l, cosine, lost);
 
     float coat = 0.0;
-    float coat_width = p.clearcoat_roughness * p.clearcoat_roughness;
-    bool coat_smooth = coat_width < LEAST_ALPHA;
-    if (CLEARCOATS && p.clearcoat > 0.0 && (front || !body)) coat = p.clearcoat * coat_albedo(cosine, coat_width);
+    l.clearcoat = 0.0;
+    l.coat_alpha = 0.0;
+    l.coat_normal = vec3(0.0, 0.0, 1.0);
+    l.coat_wo = l.wo;
+    if (CLEARCOATS && p.clearcoat > 0.0 && (front || !body)) {
+        l.clearcoat = p.clearcoat;
+        l.coat_alpha = p.clearcoat_roughness * p.clearcoat_roughness;
+        if (NORMAL_MAPS) {
+            l.coat_normal = vec3(dot(l.x, coat_normal), dot(l.y, coat_normal), dot(normal, coat_normal));
+            l.coat_wo = to_coat(l, l.wo);
+            l.coat_wo.z = max(l.coat_wo.z, LEAST_COSINE);
+        }
+        coat = l.clearcoat * coat_albedo(min(l.coat_wo.z, 1.0), l.coat_alpha);
+    }
+    bool coat_smooth = l.coat_alpha < LEAST_ALPHA;
     l.passed = 1.0 - coat;
 
     float insulator = (1.0 - p.metallic) * l.passed;
@@ -317,7 +363,13 @@ Lobes physical_lobes(Physical p, vec3 normal, vec3 tangent, bool front, vec3 wo)
     // From inside there is nothing between: either the scattering body, or the boundary.
     vec3 body_albedo = insulator * (1.0 - transmission) * p.base;
     if (!l.inside) body_albedo *= entered;
-    l.diffuse = l.inside ? body_albedo / PI : body_albedo / (PI * max(1.0 - dielectric_albedo_average(l, lost_average), LEAST_SHARE));
+    vec3 let_in = 1.0 - dielectric_albedo_average(l, lost_average);
+    if (CLEARCOATS && l.clearcoat > 0.0) {
+        // Both layers let in less near grazing.
+        vec3 both = (l.clearcoat * (1.0 - fresnel(COAT_INDEX, 1.0)) * EDGE_COVARIANCE) * max(p.specular - l.f0, 0.0);
+        let_in = let_in * (1.0 - l.clearcoat * coat_mean(l.coat_alpha)) + both;
+    }
+    l.diffuse = l.inside ? body_albedo / PI : body_albedo / (PI * max(let_in, LEAST_SHARE));
     vec3 many = l.inside ? vec3(0.0) : l.many;
     vec3 metal_many = multiple_colour(metal_average(p), lost_average);
     vec3 later = lost * mix(many, metal_many, p.metallic);
@@ -327,14 +379,13 @@ Lobes physical_lobes(Physical p, vec3 normal, vec3 tangent, bool front, vec3 wo)
     l.again = (1.0 - wide) * later / (1.0 - lost);
     l.reflected = 1.0;
     l.transmitted = vec3(0.0);
-    l.straight = true;
     vec3 through = vec3(0.0);
     if (ROUGH_TRANSMISSION) {
         vec4 share = dielectric_share(int(p.rows), cosine, l.alpha);
-        if (l.inside) l.reflected = impulse ? transmission : transmission / ((1.0 - lost) * share.z);
+        if (l.inside) l.reflected = transmission;
+        if (l.flat_facets) l.reflected /= 1.0 - lost;
+        else if (l.inside && !impulse) l.reflected /= (1.0 - lost) * share.z;
         through = insulator * transmission * p.base * entered;
-        // What is hardly bent is hardly spread.
-        l.straight = impulse || (body && w.x * (index - 1.0) < LEAST_ALPHA);
         if (!l.straight) {
             if (!body) l.transmitted = through / (1.0 - lost);
             else if (l.inside) l.transmitted = insulator * p.base * l.reflected;
@@ -361,7 +412,8 @@ bool scatters_through(Lobes l) { return ROUGH_TRANSMISSION && l.transmitted != v
 
 // Colours of what a microfacet that is seen at a cosine reflects and lets through.
 void facet(Lobes l, float cosine, out vec3 reflects, out vec3 transmits) {
-    vec3 once = mix(l.reflected * dielectric_reflectance(l, cosine), metal(l.p, cosine), l.p.metallic);
+    vec3 of_dielectric = dielectric_reflectance(l, l.flat_facets ? l.wo.z : cosine);
+    vec3 once = mix(l.reflected * of_dielectric, metal(l.p, cosine), l.p.metallic);
     reflects = l.passed * (once + l.again);
     transmits = vec3(0.0);
     if (scatters_through(l)) transmits = l.p.body != 0u ? l.transmitted * (1.0 - fresnel(l.eta, min(cosine, 1.0))) : l.transmitted;
@@ -389,23 +441,29 @@ vec4 physical_value_and_pdf(Lobes l, vec3 wi) {
     }
     float lost = 0.0;
     if (l.alpha > 0.0 && (l.multiple != vec3(0.0) || l.diffuse != vec3(0.0))) lost = missing(min(wi.z, 1.0), l.alpha);
+    // Of what scatters widely the coat takes its share both ways, of a reflection the greater one.
+    float passed = coat_passed(l, wi);
     vec3 value = l.diffuse;
+    if (!l.inside) value *= passed;
     if (!l.inside && value != vec3(0.0)) value *= 1.0 - dielectric_albedo(l, min(wi.z, 1.0), lost);
     float pdf = l.shares.x * wi.z * (1.0 / PI);
     if (l.alpha > 0.0) {
         Microfacet mirror = microfacet_reflection(l.widths, l.wo, wi);
         facet(l, mirror.cosine, reflects, transmits);
         float absent = ANISOTROPY && l.multiple != vec3(0.0) ? missing(min(wi.z, 1.0), round_width(l.widths, wi)) : lost;
-        value += mirror.value * reflects + l.multiple * absent;
+        value += min(passed / l.passed, 1.0) * (mirror.value * reflects + l.multiple * absent);
         pdf += l.shares.y * reflected_share(reflects, transmits) * mirror.pdf;
     }
     if (CLEARCOATS && l.shares.z > 0.0) {
-        float alpha = l.p.clearcoat_roughness * l.p.clearcoat_roughness;
-        Microfacet coat = microfacet_reflection(vec2(alpha), l.wo, wi);
-        float absent = missing(min(l.wo.z, 1.0), alpha);
-        float again = coat_multiple(alpha) * absent / (1.0 - absent);
-        value += l.p.clearcoat * (fresnel(COAT_INDEX, min(coat.cosine, 1.0)) + again) * coat.value;
-        pdf += l.shares.z * coat.pdf;
+        vec3 above = to_coat(l, wi);
+        if (above.z > 0.0) {
+            Microfacet coat = microfacet_reflection(vec2(l.coat_alpha), l.coat_wo, above);
+            float absent = missing(min(l.coat_wo.z, 1.0), l.coat_alpha);
+            float again = coat_multiple(l.coat_alpha) * absent / (1.0 - absent);
+            // Light counts by the cosine to the coat's own normal.
+            value += l.clearcoat * (fresnel(COAT_INDEX, min(coat.cosine, 1.0)) + again) * coat.value * (above.z / wi.z);
+            pdf += l.shares.z * coat.pdf;
+        }
     }
     return vec4(value, pdf / all);
 }
@@ -423,7 +481,10 @@ vec3 physical_direction(Lobes l, vec2 u, float choice) {
         wi = l.p.body != 0u ? refract_direction(l.wo, h, l.eta) : vec3(wi.xy, -wi.z);
         return wi.z < 0.0 ? wi : vec3(0.0);
     }
-    return microfacet_reflected(vec2(l.p.clearcoat_roughness * l.p.clearcoat_roughness), l.wo, u);
+    vec3 wi = microfacet_reflected(vec2(l.coat_alpha), l.coat_wo, u);
+    if (!NORMAL_MAPS) return wi;
+    wi = from_frame(l.coat_normal, wi);
+    return wi.z > 0.0 ? wi : vec3(0.0);
 }
 
 // What is not absorbed over a length inside.

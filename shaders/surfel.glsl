@@ -5,6 +5,7 @@ struct Surfel {
     vec3 position_error;      // bound on the rounding of `position`, by coordinate; its part across the surface counts
     vec3 geometric_normal;    // unit, on the side of wo
     vec3 shading_normal;      // unit, on the side of wo
+    vec3 unbent_normal;       // where NORMAL_MAPS: the same before maps bent it
     uint material;
     bool front;               // wo is on the outward side
     vec2 uv;                  // where TEXTURES
@@ -154,6 +155,7 @@ Surfel surfel(Hit hit, vec3 wo) {
             s.position += s.lift;
         }
     }
+    if (NORMAL_MAPS) s.unbent_normal = s.shading_normal;
     if (TANGENTS || NORMAL_MAPS) {
         vec3 outward_normal = s.front ? s.shading_normal : -s.shading_normal;
         s.tangent = TANGENTS ? tangent_at(hit, outward_normal) : vec4(0.0);
@@ -188,7 +190,7 @@ void find_lobes(inout Surfel s, Material material, vec3 wo) {
         vec2 sc = sin_cos_turns(p.anisotropy_rotation);
         s.tangent.xyz = sc.y * s.tangent.xyz + sc.x * s.tangent.w * cross(outward, s.tangent.xyz);
     }
-    s.lobes = physical_lobes(p, s.shading_normal, s.tangent.xyz, s.front, wo);
+    s.lobes = physical_lobes(p, s.shading_normal, NORMAL_MAPS ? s.unbent_normal : s.shading_normal, s.tangent.xyz, s.front, wo);
 }
 
 // What a choice of luminaires has to know of the receiver: the shading normal, of length 2 if light from both of its sides is scattered.

@@ -62,7 +62,7 @@ impl Surfel {
             let transmission = if transmitted == DVec3::ZERO { DVec3::ZERO } else { transmission };
             Impulses { reflection, reflected, transmission, transmitted, eta, scattered: Some(scattered) }
         };
-        let bent = about(self.shading_normal, lobes);
+        let bent = about(lobes.impulse_normal(), lobes);
         let is_reflected = self.geometric_normal.dot(bent.reflected) > 0.0;
         if !lobes.is_clear() {
             let reflected = if is_reflected { bent.reflected } else { reflect(wo, self.geometric_normal) };

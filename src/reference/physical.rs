@@ -7,18 +7,19 @@
 //! Models", 2019). Both have the colour of later reflections. What goes through is scaled to all that is not reflected.
 //!
 //! Light may go either way where it is scattered by the body, and by microfacets but for that scale: one direction is worth more than the other by the ratio of
-//! what is missing at them, at most. The coat takes its share by `wo` alone, and so does what is transmitted.
+//! what is missing at them, at most. The coat takes its share at both directions; what is transmitted by `wo` alone.
 
 use super::fresnel::{fresnel, fresnel_conductor, reflect, refract};
 use super::microfacet::{Ggx, Microfacet};
 use super::warp::{cosine_hemisphere, frame};
 use crate::scene::albedo_table::TABLE;
-use crate::scene::{LEAST_ALPHA, Material, conductor_average};
+use crate::scene::{COAT_INDEX, LEAST_ALPHA, Material, conductor_average};
 use glam::{DMat3, DVec3};
 use std::f64::consts::PI;
 
-/// The index of refraction of a coat.
-pub const COAT_INDEX: f64 = 1.5;
+/// The covariance, over directions in proportion to their cosine, of what a smooth coat and a smooth dielectric of its index reflect above what they do at normal
+/// incidence, `(F - F0) / (1 - F0)`; of other indices, and of rough ones, it is less.
+pub const EDGE_COVARIANCE: f64 = 0.0117;
 /// A share that is divided by is at least this.
 pub const LEAST_SHARE: f64 = 1e-6;
 /// Of a lobe of microfacets up to this width what they send to each other is added to their reflectance, ...
@@ -53,12 +54,14 @@ pub struct PhysicalSurface {
     pub transmission: f64,
     /// Whether somebody may be inside: the surface is that of a body which transmits somewhere.
     pub body: bool,
-    /// Natural logarithm of what is absorbed in a unit of length inside, per channel.
+    /// Absorption coefficient inside, per unit of length and channel.
     pub absorption: DVec3,
     /// Strength of the coat.
     pub clearcoat: f64,
     /// Its perceptual roughness.
     pub clearcoat_roughness: f64,
+    /// Its unit normal, on the side of `wo`: maps that bend the surface's do not bend it. Zero: the surface's.
+    pub coat_normal: DVec3,
 }
 
 impl PhysicalSurface {
@@ -84,6 +87,7 @@ impl PhysicalSurface {
             absorption: p.absorption(),
             clearcoat: p.clearcoat.into(),
             clearcoat_roughness: p.clearcoat_roughness.into(),
+            coat_normal: DVec3::ZERO,
         })
     }
 
@@ -124,22 +128,21 @@ impl PhysicalSurface {
 
     /// What the surface reflects and transmits of even light, about: the same for all directions.
     pub fn hemispherical_albedo(&self) -> DVec3 {
-        let x = TABLE.edge_average(0.0, self.index());
-        let (f0, f90) = (self.normal_reflectance(), self.specular);
-        let reflected = f0 + (f90 - f0) * x;
-        let dielectric = reflected + (1.0 - reflected) * self.base;
-        let metal = self.metal_average();
-        let base = self.metallic * metal + (1.0 - self.metallic) * dielectric;
-        let coat = self.clearcoat * coat_average();
-        coat + (1.0 - coat) * base
+        self.smooth_albedo(TABLE.edge_average(0.0, self.index()), self.metal_average(), coat_average())
     }
 
     /// Albedo as from straight above.
     pub fn normal_albedo(&self) -> DVec3 {
-        let f0 = self.normal_reflectance();
-        let dielectric = f0 + (1.0 - f0) * self.base;
-        let base = self.metallic * self.metal(1.0) + (1.0 - self.metallic) * dielectric;
-        let coat = self.clearcoat * fresnel(COAT_INDEX, 1.0);
+        self.smooth_albedo(0.0, self.metal(1.0), fresnel(COAT_INDEX, 1.0))
+    }
+
+    /// Albedo of the layers of a smooth surface, by what of each is reflected: of the dielectric by `(F - F0) / (1 - F0)`.
+    fn smooth_albedo(&self, edge: f64, metal: DVec3, coat: f64) -> DVec3 {
+        let f0 = if self.ior == 0.0 { 1.0 } else { fresnel(self.ior, 1.0) };
+        let reflected = edge_colour(self.normal_reflectance(), self.specular, f0, edge);
+        let dielectric = reflected + (1.0 - reflected) * self.base;
+        let base = self.metallic * metal + (1.0 - self.metallic) * dielectric;
+        let coat = self.clearcoat * coat;
         coat + (1.0 - coat) * base
     }
 
@@ -171,6 +174,12 @@ impl PhysicalSurface {
     }
 }
 
+/// A dielectric's reflectance between that at normal incidence, `f0`, and that at grazing, by `edge = (F - normal) / (1 - normal)`. Unpolarised light is
+/// reflected less than at normal incidence if the index is above `2 + sqrt(3)`: then by the share of `F`.
+fn edge_colour(f0: DVec3, f90: f64, normal: f64, edge: f64) -> DVec3 {
+    if edge < 0.0 { f0 * (1.0 + edge * (1.0 - normal) / normal) } else { f0 + (f90 - f0) * edge }
+}
+
 /// The dielectric at one side of a surface: what it reflects.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Dielectric {
@@ -198,7 +207,11 @@ impl Dielectric {
         if self.inside {
             return DVec3::splat(f);
         }
-        self.f0 + (self.f90 - self.f0) * ((f - self.normal) / (1.0 - self.normal))
+        self.edge_colour((f - self.normal) / (1.0 - self.normal))
+    }
+
+    fn edge_colour(&self, edge: f64) -> DVec3 {
+        edge_colour(self.f0, self.f90, self.normal, edge)
     }
 
     /// What is missing at a cosine.
@@ -215,21 +228,59 @@ impl Dielectric {
         if self.inside {
             return DVec3::splat(1.0 - share.transmitted_inside / share.inside);
         }
-        (1.0 - missing) * (self.f0 + (self.f90 - self.f0) * share.edge) + missing * self.multiple
+        (1.0 - missing) * self.edge_colour(share.edge) + missing * self.multiple
     }
 
     /// The mean of that over directions in proportion to their cosine; from outside.
     fn average(&self) -> DVec3 {
         let missing = if self.alpha == 0.0 { 0.0 } else { TABLE.missing_average(self.alpha) };
-        (1.0 - missing) * self.f0
-            + (self.f90 - self.f0) * TABLE.edge_average(self.alpha, self.index)
-            + missing * self.multiple
+        let edge = TABLE.edge_average(self.alpha, self.index);
+        (1.0 - missing) * self.edge_colour(edge / (1.0 - missing)) + missing * self.multiple
     }
 }
 
 /// The colour of light that has met microfacets of this mean reflectance more than once, when it leaves them (Kulla and Conty).
 fn multiple_colour(average: DVec3, missing: f64) -> DVec3 {
     average * average * (1.0 - missing) / (1.0 - average * missing)
+}
+
+/// The coat at one side of a surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Coat {
+    /// 0: there is none.
+    strength: f64,
+    /// Width of its microfacets.
+    alpha: f64,
+    /// From the coat's frame, its normal +z, to that of the surface.
+    to_surface: DMat3,
+    /// The direction that light goes to, in the coat's frame.
+    wo: DVec3,
+}
+
+impl Coat {
+    /// Whether it is an impulse.
+    fn is_smooth(&self) -> bool {
+        self.alpha < LEAST_ALPHA
+    }
+
+    /// The share that it reflects, seen at a cosine to its normal.
+    fn albedo(&self, cosine: f64) -> f64 {
+        if self.strength == 0.0 { 0.0 } else { self.strength * coat_albedo(cosine, self.alpha) }
+    }
+
+    /// The share that it lets through on the way from a direction above the surface.
+    fn passed(&self, wi: DVec3) -> f64 {
+        1.0 - self.albedo(self.cosine(wi))
+    }
+
+    fn cosine(&self, wi: DVec3) -> f64 {
+        self.to_surface.z_axis.dot(wi).clamp(LEAST_COSINE, 1.0)
+    }
+
+    /// The mean of the share that it lets through, over directions in proportion to their cosine.
+    fn average_passed(&self) -> f64 {
+        if self.strength == 0.0 { 1.0 } else { 1.0 - self.strength * coat_mean(self.alpha) }
+    }
 }
 
 /// What a surface does with light towards one direction.
@@ -241,9 +292,9 @@ pub struct Lobes {
     /// The direction, in that frame.
     wo: DVec3,
     ggx: Ggx,
-    coat_ggx: Ggx,
+    coat: Coat,
     dielectric: Dielectric,
-    /// What the coat lets through.
+    /// What the coat lets through, towards `wo`.
     passed: f64,
     /// Of Lambert's lobe, but for what is reflected of `wi`.
     diffuse: DVec3,
@@ -257,6 +308,8 @@ pub struct Lobes {
     transmitted: DVec3,
     /// Whether what is transmitted goes on unscattered.
     straight: bool,
+    /// Whether it does so through microfacets that are not smooth: they and what they let through go by the reflectance at `wo`, and so add up to all.
+    flat: bool,
     /// Albedos of impulses.
     impulse_reflection: DVec3,
     impulse_transmission: DVec3,
@@ -286,39 +339,58 @@ impl Lobes {
 
         let inside = p.body && !front;
         let index = p.index();
-        let (f0, f90) = (p.normal_reflectance(), p.specular);
-        let average = f0 + (f90 - f0) * TABLE.edge_average(0.0, index);
-        let multiple = multiple_colour(average, missing_average);
+        // What is hardly bent is hardly spread.
+        let straight = smooth || (p.body && along * (index - 1.0) < LEAST_ALPHA);
+        let flat = straight && !smooth;
+        let (f0, f90, normal_reflectance) = (p.normal_reflectance(), p.specular, fresnel(index, 1.0));
+        let average = edge_colour(f0, f90, normal_reflectance, TABLE.edge_average(0.0, index));
+        let multiple = if flat { DVec3::ZERO } else { multiple_colour(average, missing_average) };
         let eta = if inside { 1.0 / index } else { index };
-        let normal_reflectance = fresnel(index, 1.0);
-        let dielectric = Dielectric { eta, index, inside, f0, f90, normal: normal_reflectance, alpha, multiple };
+        let dielectric_alpha = if flat { 0.0 } else { alpha };
+        let dielectric =
+            Dielectric { eta, index, inside, f0, f90, normal: normal_reflectance, alpha: dielectric_alpha, multiple };
         let reflects = dielectric.albedo(cosine, missing);
         let share = TABLE.dielectric(cosine, alpha, index);
 
         let coated = p.clearcoat > 0.0 && (front || !p.body);
-        let coat_width = p.clearcoat_roughness * p.clearcoat_roughness;
-        let coat_smooth = coat_width < LEAST_ALPHA;
-        let coat = if coated { p.clearcoat * coat_albedo(cosine, coat_width) } else { 0.0 };
-        let passed = 1.0 - coat;
+        let coat_normal = if p.coat_normal == DVec3::ZERO { DVec3::Z } else { to_world.transpose() * p.coat_normal };
+        let to_surface =
+            if p.coat_normal == DVec3::ZERO { DMat3::IDENTITY } else { axes(coat_normal, DVec3::ZERO, false) };
+        let mut coat = Coat {
+            strength: if coated { p.clearcoat } else { 0.0 },
+            alpha: p.clearcoat_roughness * p.clearcoat_roughness,
+            to_surface,
+            wo: to_surface.transpose() * wo,
+        };
+        coat.wo.z = coat.wo.z.max(LEAST_COSINE);
+        let coat_share = coat.albedo(coat.wo.z.min(1.0));
+        let passed = 1.0 - coat_share;
 
         let insulator = (1.0 - p.metallic) * passed;
         let transmission = p.transmits();
         let entered = DVec3::ONE - reflects;
         // From inside there is nothing between: either the scattering body, or the boundary.
         let body = insulator * (1.0 - transmission) * p.base * if inside { DVec3::ONE } else { entered };
+        // What the layers let in on average: both let in less near grazing, so that the mean of the product is more than the product of the means.
+        let common = coat.strength * (1.0 - fresnel(COAT_INDEX, 1.0)) * (f90 - f0).max(DVec3::ZERO) * EDGE_COVARIANCE;
         let diffuse = match inside {
             true => body / PI,
-            false => body / (PI * (1.0 - dielectric.average()).max(DVec3::splat(LEAST_SHARE))),
+            false => {
+                let let_in = (1.0 - dielectric.average()) * coat.average_passed() + common;
+                body / (PI * let_in.max(DVec3::splat(LEAST_SHARE)))
+            }
         };
         let metal_multiple = multiple_colour(p.metal_average(), missing_average);
         let dielectric_multiple = if inside { DVec3::ZERO } else { multiple };
         let multiple = missing * (p.metallic * metal_multiple + (1.0 - p.metallic) * dielectric_multiple);
         let wide = ((alpha - NARROW) / (WIDE - NARROW)).clamp(0.0, 1.0);
         let of_boundary = if inside { transmission } else { 1.0 };
-        let reflected = if inside && !smooth { of_boundary / ((1.0 - missing) * share.inside) } else { of_boundary };
+        let reflected = match inside {
+            _ if flat => of_boundary / (1.0 - missing),
+            true if !smooth => of_boundary / ((1.0 - missing) * share.inside),
+            _ => of_boundary,
+        };
         let through = insulator * transmission * p.base * entered;
-        // What is hardly bent is hardly spread.
-        let straight = smooth || (p.body && along * (index - 1.0) < LEAST_ALPHA);
         let transmitted = if straight {
             DVec3::ZERO
         } else if !p.body {
@@ -331,7 +403,7 @@ impl Lobes {
         let metal = (1.0 - missing) * p.metal(cosine) + missing * metal_multiple;
         let mirrored = passed * (p.metallic * metal + (1.0 - p.metallic) * of_boundary * reflects);
         let widely = passed * wide * multiple;
-        let coat_colour = DVec3::splat(coat);
+        let coat_colour = DVec3::splat(coat_share);
         let impulse = |colour: DVec3, is: bool| if is { colour } else { DVec3::ZERO };
         let scattered = |colour: DVec3, is: bool| mean(impulse(colour, is));
         Lobes {
@@ -339,7 +411,7 @@ impl Lobes {
             to_world,
             wo,
             ggx,
-            coat_ggx: Ggx { x: coat_width, y: coat_width },
+            coat,
             dielectric,
             passed,
             diffuse,
@@ -348,12 +420,13 @@ impl Lobes {
             reflected,
             transmitted,
             straight,
-            impulse_reflection: impulse(mirrored, smooth) + impulse(coat_colour, coat_smooth),
+            flat,
+            impulse_reflection: impulse(mirrored, smooth) + impulse(coat_colour, coat.is_smooth()),
             impulse_transmission: impulse(through, straight),
             shares: [
                 mean(body + widely),
                 scattered(mirrored - widely, !smooth) + scattered(through, !straight),
-                scattered(coat_colour, !coat_smooth),
+                scattered(coat_colour, !coat.is_smooth()),
             ],
         }
     }
@@ -369,9 +442,15 @@ impl Lobes {
         self.straight && (1.0 - p.metallic) * p.transmits() * p.base != DVec3::ZERO
     }
 
-    /// The lobes of the same surface about another normal.
+    /// The lobes of the same surface about another normal, the coat's, too.
     pub fn about(&self, normal: DVec3, front: bool, wo: DVec3) -> Self {
-        Lobes::new(&self.surface, normal, front, wo)
+        Lobes::new(&PhysicalSurface { coat_normal: DVec3::ZERO, ..self.surface }, normal, front, wo)
+    }
+
+    /// The normal, in the world, about which there are impulses. One of a coat alone goes by the coat's.
+    pub fn impulse_normal(&self) -> DVec3 {
+        let of_coat = self.surface.coat_normal != DVec3::ZERO && !self.straight && !self.surface.is_smooth();
+        self.to_world * if of_coat { self.coat.to_surface.z_axis } else { DVec3::Z }
     }
 
     /// By how much the index is greater behind the surface, for what goes through.
@@ -410,25 +489,31 @@ impl Lobes {
         }
         let cosine = wi.z.min(1.0);
         let missing = self.dielectric.missing(cosine);
+        // Of what scatters widely the coat takes its share both ways, of a reflection the greater one.
+        let entered = self.coat.passed(wi);
         let mut value = self.diffuse;
         if !self.dielectric.inside {
-            value *= DVec3::ONE - self.dielectric.albedo(cosine, missing);
+            value *= entered * (DVec3::ONE - self.dielectric.albedo(cosine, missing));
         }
         let mut pdf = cosine_share * wi.z / PI;
-        if self.dielectric.alpha > 0.0 {
+        if !self.surface.is_smooth() {
             let facet = self.ggx.reflection(self.wo, wi);
             let [reflects, _] = self.facet(facet.cosine);
             let absent = TABLE.missing(cosine, self.ggx.round(wi));
-            value += facet.value * reflects + self.multiple * absent;
+            value += (entered / self.passed).min(1.0) * (facet.value * reflects + self.multiple * absent);
             pdf += facet_share * self.reflected_share(facet.cosine) * facet.pdf;
         }
         if coat_share > 0.0 {
-            let Microfacet { value: once, pdf: density, cosine: to_facet } = self.coat_ggx.reflection(self.wo, wi);
-            let alpha = self.coat_ggx.x;
-            let missing = TABLE.missing(self.wo.z.min(1.0), alpha);
-            let again = coat_multiple(alpha) * missing / (1.0 - missing);
-            value += self.surface.clearcoat * (fresnel(COAT_INDEX, to_facet.min(1.0)) + again) * once;
-            pdf += coat_share * density;
+            let Coat { strength, alpha, wo, .. } = self.coat;
+            let above = self.coat.to_surface.transpose() * wi;
+            if above.z > 0.0 {
+                let Microfacet { value: once, pdf: density, cosine: to_facet } = self.coat_ggx().reflection(wo, above);
+                let missing = TABLE.missing(wo.z.min(1.0), alpha);
+                let again = coat_multiple(alpha) * missing / (1.0 - missing);
+                // Light counts by the cosine to the coat's own normal.
+                value += strength * (fresnel(COAT_INDEX, to_facet.min(1.0)) + again) * once * (above.z / wi.z);
+                pdf += coat_share * density;
+            }
         }
         (value, pdf / all)
     }
@@ -451,16 +536,22 @@ impl Lobes {
             };
             if wi.z * side > 0.0 { wi } else { DVec3::ZERO }
         } else {
-            self.coat_ggx.reflected(self.wo, u)
+            let wi = self.coat.to_surface * self.coat_ggx().reflected(self.coat.wo, u);
+            if wi.z > 0.0 { wi } else { DVec3::ZERO }
         };
         self.to_world * wi
+    }
+
+    fn coat_ggx(&self) -> Ggx {
+        Ggx { x: self.coat.alpha, y: self.coat.alpha }
     }
 
     /// Colours of what a microfacet that is seen at a cosine reflects and lets through.
     fn facet(&self, cosine: f64) -> [DVec3; 2] {
         let p = &self.surface;
         let metal = p.metallic * p.metal(cosine);
-        let dielectric = (1.0 - p.metallic) * self.reflected * self.dielectric.reflectance(cosine);
+        let of_dielectric = if self.flat { self.wo.z } else { cosine };
+        let dielectric = (1.0 - p.metallic) * self.reflected * self.dielectric.reflectance(of_dielectric);
         let passes = if p.body { 1.0 - fresnel(self.dielectric.eta, cosine.min(1.0)) } else { 1.0 };
         [self.passed * (metal + dielectric + self.again), self.transmitted * passes]
     }
@@ -492,6 +583,17 @@ fn coat_albedo(cosine: f64, alpha: f64) -> f64 {
     let f0 = fresnel(COAT_INDEX, 1.0);
     let edge = TABLE.dielectric(cosine, alpha, COAT_INDEX).edge;
     (1.0 - missing) * (f0 + (1.0 - f0) * edge) + missing * coat_multiple(alpha)
+}
+
+/// The mean of that over directions in proportion to their cosine.
+fn coat_mean(alpha: f64) -> f64 {
+    if alpha < LEAST_ALPHA {
+        return coat_average();
+    }
+    let missing = TABLE.missing_average(alpha);
+    let f0 = fresnel(COAT_INDEX, 1.0);
+    let edge = TABLE.edge_average(alpha, COAT_INDEX);
+    (1.0 - missing) * f0 + (1.0 - f0) * edge + missing * coat_multiple(alpha)
 }
 
 /// Of what a coat reflects more than once, the share that leaves it.

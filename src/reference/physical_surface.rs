@@ -8,7 +8,8 @@ use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
 
 impl Reference {
-    /// What the material's metallic-roughness surface is at a point, if it has one. `outward` is the unit normal.
+    /// What the material's metallic-roughness surface is at a point, if it has one. `outward` is the unit normal; `unbent`, on the side of `wo`, that before
+    /// maps bent it, which is that of a coat (`KHR_materials_clearcoat`).
     pub(super) fn physical_surface(
         &self,
         material: &Material,
@@ -16,6 +17,7 @@ impl Reference {
         colour: DVec3,
         tangent: Option<Tangent>,
         outward: DVec3,
+        unbent: DVec3,
     ) -> Option<PhysicalSurface> {
         let p = material.physical.as_ref()?;
         let maps = &p.maps;
@@ -43,6 +45,7 @@ impl Reference {
             transmission: own.transmission * number(maps.transmission),
             clearcoat: own.clearcoat * number(maps.clearcoat),
             clearcoat_roughness: own.clearcoat_roughness * number(maps.clearcoat_roughness),
+            coat_normal: if material.bends_normal() { unbent } else { DVec3::ZERO },
             ..own
         })
     }

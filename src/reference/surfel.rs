@@ -97,6 +97,7 @@ impl Reference {
         let uv = texture_coordinates(mesh, triangle, weights);
         let map = |map: Option<u32>| self.map(map, uv).truncate();
         let outwards = if front { 1.0 } else { -1.0 };
+        let unbent = shading_normal;
         let mut outward_normal = outwards * shading_normal;
         let mut tangent = match material.needs_tangents() {
             true => self.tangent(hit.object, hit.triangle, weights, outward_normal),
@@ -135,7 +136,7 @@ impl Reference {
             thin: material.is_sheet(),
             coat_transmittance: self.coats[object.material.unwrap_or(triangle.material) as usize],
             impulse_probability: material.impulse_probability.map(f64::from),
-            physical: self.physical_surface(material, uv, colour, tangent, outward_normal),
+            physical: self.physical_surface(material, uv, colour, tangent, outward_normal, unbent),
         }
     }
 }

@@ -48,7 +48,9 @@ pub use luminaire_table::{EmissiveTriangle, LuminaireTable, SampledLuminaire};
 pub use material::{BumpMap, Maps, Material, NormalMap};
 pub use mesh::{Mesh, Object, Triangle};
 pub(crate) use mesh::{moved_box, outward, widen};
-pub use physical::{ChannelMap, LEAST_ALPHA, Physical, PhysicalMaps, conductor_average, conductor_reflectance};
+pub use physical::{
+    COAT_INDEX, ChannelMap, LEAST_ALPHA, Physical, PhysicalMaps, conductor_average, conductor_reflectance,
+};
 pub use profile::Profile;
 pub use sensor::{Camera, Lens, Pivot, Projection, Sensor};
 pub use settings::{Exposure, FilmSettings, RenderSettings};

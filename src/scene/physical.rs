@@ -138,11 +138,15 @@ impl Default for Physical {
     }
 }
 
-/// A lobe of microfacets narrower than this, in its `alpha`, is an impulse.
-pub const LEAST_ALPHA: f64 = 1e-4;
+/// A lobe of microfacets narrower than this, in its `alpha`, is an impulse. Not 1e-4, which single precision rounds the square of a roughness of 0.01 to: what is an
+/// impulse in one tracer is one in all of them.
+pub const LEAST_ALPHA: f64 = 1.01e-4;
+
+/// The index of refraction of a coat.
+pub const COAT_INDEX: f64 = 1.5;
 
 impl Physical {
-    /// Natural logarithm of what is absorbed in a unit of length inside, per channel: 0 is clear.
+    /// Absorption coefficient inside, per unit of length and channel: 0 is clear.
     pub fn absorption(&self) -> DVec3 {
         let log = -DVec3::from_array(self.attenuation_color.as_dvec3().to_array().map(f64::ln));
         if self.attenuation_distance > 0.0 && self.attenuation_distance.is_finite() {
@@ -177,11 +181,14 @@ impl Physical {
 /// Reflectance of a smooth metal for unpolarised light: Fresnel's equations for an index of refraction `eta` with the extinction coefficient `k`.
 pub fn conductor_reflectance(eta: f64, k: f64, cos_i: f64) -> f64 {
     let (c2, s2) = (cos_i * cos_i, 1.0 - cos_i * cos_i);
-    let t0 = eta * eta - k * k - s2;
+    // eta^2 - k^2 - s2, without its cancellation.
+    let t0 = (eta - 1.0) * (eta + 1.0) - k * k + c2;
     let ab = (t0 * t0 + 4.0 * eta * eta * k * k).sqrt();
     let a = (0.5 * (ab + t0)).max(0.0).sqrt();
-    let s = (ab + c2 - 2.0 * cos_i * a) / (ab + c2 + 2.0 * cos_i * a);
-    let p = s * (c2 * ab + s2 * s2 - 2.0 * cos_i * s2 * a) / (c2 * ab + s2 * s2 + 2.0 * cos_i * s2 * a);
+    // No index at all, and grazing light on an index of 1, are limits.
+    let over = |less: f64, sum: f64| if sum > 0.0 { less / sum } else { 1.0 };
+    let s = over(ab + c2 - 2.0 * cos_i * a, ab + c2 + 2.0 * cos_i * a);
+    let p = s * over(c2 * ab + s2 * s2 - 2.0 * cos_i * s2 * a, c2 * ab + s2 * s2 + 2.0 * cos_i * s2 * a);
     0.5 * (s + p)
 }
 

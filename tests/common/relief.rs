@@ -108,6 +108,11 @@ pub fn relief_room(width: u32, height: u32) -> Scene {
     let mirrored =
         place(-1.0, 0.75, 0.0, 1.0) * Affine3A::from_rotation_z(0.5) * Affine3A::from_scale(Vec3::new(-0.1, 0.4, 0.4));
     add(&mut scene, slab, with_normals(0, 1.0, physical(frosted)), mirrored);
+    // A rough coat, and a smooth one, over what is bent below them.
+    for (x, clearcoat_roughness) in [(-1.25, 0.4), (1.25, 0.0)] {
+        let lacquer = Physical { clearcoat: 1.0, clearcoat_roughness, roughness: 0.6, ..Physical::default() };
+        add(&mut scene, mapped_ball(2), with_normals(0, 1.0, physical(lacquer)), place(x, 1.25, -0.5, 0.3));
+    }
     // Both sides of one sheet, and the back of it is what is seen.
     let mut sheet = quad(Vec3::new(1.5, -1.75, 0.5), Vec3::new(-0.5, 0.0, 0.25), Vec3::Y * 0.75);
     sheet.uvs = vec![Vec2::ZERO, Vec2::Y * 2.0, Vec2::new(-1.5, 2.0), Vec2::X * -1.5];

@@ -13,7 +13,7 @@ use luminaire::reference::scatter::scatter;
 use luminaire::reference::surfel::Surfel;
 use luminaire::reference::warp::uniform_hemisphere;
 use luminaire::sampling::{random4, uniform};
-use luminaire::scene::{Directions, Environment, Material, Physical};
+use luminaire::scene::{Directions, Environment, LEAST_ALPHA, Material, Physical};
 
 /// Directions for every surface and viewing direction.
 const N: u32 = 3000;
@@ -39,15 +39,30 @@ fn surfaces() -> Vec<(Physical, bool)> {
             false,
         ));
     }
+    // Where a square of single precision may fall to the other side; where what is rough hardly bends; and the limits of indices.
+    let [white, black] = [Vec3::ONE, Vec3::ZERO];
+    let glass = Physical { transmission: 1.0, base_color: white, ..Physical::default() };
+    all.push((Physical { metallic: 1.0, roughness: 0.01, ..Physical::default() }, false));
+    all.push((Physical { clearcoat: 1.0, clearcoat_roughness: 0.01, ..Physical::default() }, false));
+    for (roughness, ior) in [(0.02, 1.25), (0.012, 1.5), (0.03, 1.05), (0.5, 1.0003)] {
+        all.push((Physical { roughness, ior, ..glass.clone() }, false));
+    }
+    let specular_color = Vec3::new(1.0, 0.2, 0.0);
+    for (roughness, ior) in [(0.0, 10.0), (0.5, 5.0)] {
+        all.push((Physical { roughness, ior, specular_color, base_color: black, ..Physical::default() }, false));
+    }
+    let conductor = Some([Vec3::new(0.0, 1.0, 0.2), Vec3::new(0.0, 0.0, 3.9)]);
+    all.push((Physical { metallic: 1.0, conductor, ..Physical::default() }, false));
+    all.push((Physical { metallic: 1.0, clearcoat: 1.0, clearcoat_roughness: 0.0, ..Physical::default() }, false));
     all
 }
 
 /// By how much of itself a value at a direction may be off, through rounding of the half vector.
 fn tolerance(surfel: &Surfel, wo: DVec3, wi: DVec3) -> f64 {
     let p = surfel.physical.expect("a surface");
-    let width = (p.roughness * p.roughness).max(1e-4);
+    let width = (p.roughness * p.roughness).max(LEAST_ALPHA);
     let narrow = if wi.z < 0.0 && p.body { (p.ior - 1.0).abs().min(1.0) } else { 1.0 };
-    let coat = if p.clearcoat > 0.0 { (p.clearcoat_roughness * p.clearcoat_roughness).max(1e-4) } else { 1.0 };
+    let coat = if p.clearcoat > 0.0 { (p.clearcoat_roughness * p.clearcoat_roughness).max(LEAST_ALPHA) } else { 1.0 };
     // Near the critical angle of the microfacet what it lets through is the root of a small difference.
     let eta = if p.body && !surfel.front { 1.0 / p.ior } else { p.ior };
     let sum = if wi.z < 0.0 { wo + eta * wi } else { wo + wi };

@@ -4,9 +4,9 @@ use super::pictures::{mean, pixels};
 use super::*;
 use crate::common::relief::*;
 use crate::common::scenes::*;
-use glam::{Affine3A, DVec3, Vec3};
+use glam::{Affine3A, DVec3, Vec2, Vec3};
 use luminaire::reference::Reference;
-use luminaire::scene::{Environment, Scene};
+use luminaire::scene::{Environment, Luminaire, Material, Physical, Scene};
 
 /// What every tracer makes of a scene.
 fn everywhere(scene: &Scene, samples: u32, check: impl Fn(&str, &[DVec3])) {
@@ -29,6 +29,49 @@ fn planes_are_as_bright_as_their_normals_say() {
         let wrong: Vec<_> = off.iter().filter(|(off, _)| off.is_nan() || *off > bound).collect();
         assert!(wrong.is_empty(), "{who}: {wrong:#?}");
     });
+}
+
+/// A black sheet with a coat, in the light of a sun that the coat mirrors towards the camera: a map that tilts the sheet's normal leaves the coat as it is
+/// (`KHR_materials_clearcoat`), smooth or rough.
+#[test]
+fn coats_are_not_bent() {
+    const DIAMETER: f32 = 6.0;
+    let scene = |clearcoat_roughness: f32, tilted: bool| {
+        let mut scene = empty(8, 8);
+        scene.sensor = pinhole(Vec3::Z * 5.0, Vec3::ZERO, Vec3::Y, 1.0);
+        scene.textures = vec![normals(4, 4, |_, _| Vec2::new(0.6, 0.2)).into()];
+        let black = Physical {
+            base_color: Vec3::ZERO,
+            specular: 0.0,
+            clearcoat: 1.0,
+            clearcoat_roughness,
+            ..Physical::default()
+        };
+        let material = Material { physical: Some(black), ..Material::default() };
+        let mut sheet = quad(Vec3::new(-1.0, -1.0, 0.0), Vec3::X * 2.0, Vec3::Y * 2.0);
+        sheet.uvs = vec![Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y];
+        let material = if tilted { with_normals(0, 1.0, material) } else { material };
+        add(&mut scene, sheet, material, Affine3A::IDENTITY);
+        scene.luminaires = vec![Luminaire::Sun { direction: Vec3::NEG_Z, irradiance: Vec3::ONE, angle: DIAMETER }];
+        scene
+    };
+    // A smooth coat of index 1.5 shows 4 % of the disc, of irradiance 1.
+    let radius = (0.5 * f64::from(DIAMETER)).to_radians();
+    let shown = 0.04 / (std::f64::consts::PI * radius.sin().powi(2));
+    let plain = scene(0.3, false);
+    let rough = mean(&pixels(&mut Reference::new(&plain), &plain, 16)).x;
+    assert!(rough > 0.05, "{rough}");
+    for (roughness, expected) in [(0.0, shown), (0.3, rough)] {
+        for tilted in [false, true] {
+            everywhere(&scene(roughness, tilted), 16, |who, pixels| {
+                let found = mean(pixels).x;
+                assert!(
+                    (found / expected - 1.0).abs() < 2e-3,
+                    "{who}, roughness {roughness}, tilted {tilted}: {found} {expected}"
+                );
+            });
+        }
+    }
 }
 
 /// Flat maps everywhere: the picture without them, but for rounding.

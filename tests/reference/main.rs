@@ -11,6 +11,7 @@ mod exposure;
 mod facets;
 mod impulses;
 mod intersection;
+mod layers;
 mod light;
 mod light_tree;
 mod lost_light;

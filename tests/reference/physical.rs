@@ -27,13 +27,13 @@ fn glass(roughness: f32, ior: f32) -> Physical {
 }
 
 /// Evenly distributed numbers: Roberts' sequence for three dimensions.
-fn evenly(i: u32) -> [f64; 3] {
+pub fn evenly(i: u32) -> [f64; 3] {
     [0.819_172_513_396_164_4, 0.671_043_606_703_789_2, 0.549_700_477_901_970_3]
         .map(|step| (0.5 + step * f64::from(i + 1)).fract())
 }
 
 /// All that is scattered towards `wo`, impulses included: the mean weight.
-fn albedo_of(surfel: &Surfel, wo: DVec3, n: u32) -> DVec3 {
+pub fn albedo_of(surfel: &Surfel, wo: DVec3, n: u32) -> DVec3 {
     let sum: DVec3 = (0..n)
         .map(|i| {
             let scattered = scatter(surfel, wo, Directions::Bsdf, evenly(i));
@@ -252,7 +252,8 @@ fn coats_and_brushes_gain_nothing() {
                 // Numbers of the table are a little off, those for what is brushed more so.
                 let most = if p.anisotropy > 0.0 { 1.05 } else { 1.01 };
                 let (low, high) = (albedo.min_element(), albedo.max_element());
-                let least = if p.anisotropy > 0.0 { 0.9 } else { 0.97 };
+                // Of what a coat lets through to a rough metal and back the lesser share counts.
+                let least = if p.anisotropy > 0.0 { 0.9 } else { 0.95 };
                 let Physical { roughness, clearcoat, clearcoat_roughness, metallic, transmission, anisotropy, .. } = p;
                 let what = format!(
                     "roughness {roughness}, coat {clearcoat} {clearcoat_roughness}, metallic {metallic}, transmission {transmission}, \
@@ -269,8 +270,8 @@ fn coats_and_brushes_gain_nothing() {
     assert!(!found.iter().any(|(off, ..)| *off));
 }
 
-/// Light may go either way through the body below a dielectric, and by microfacets but for what is added of later reflections; a coat takes its share by what
-/// it lets through of one of the directions: these ratios are what they are said to be.
+/// Light may go either way through the body below a dielectric, through a coat, and by microfacets but for what is added of later reflections, where the ratio is what
+/// it is said to be.
 #[test]
 fn reciprocity_fails_by_no_more_than_is_said() {
     let pair = |i: u32| {
@@ -300,14 +301,16 @@ fn reciprocity_fails_by_no_more_than_is_said() {
             }
         }
     }
-    // A coat takes its share by one of the directions: what the other lets through over that bounds the ratio.
-    let coated = Physical { clearcoat: 1.0, clearcoat_roughness: 0.0, metallic: 0.0, specular: 0.0, ..metal(0.5) };
-    let surfel = physical_surfel(&coated, false, true);
-    for i in 0..500 {
-        let (wo, wi) = pair(i);
-        let (there, back) = (surfel.bsdf(wo, wi).x, surfel.bsdf(wi, wo).x);
-        let bound = (1.0 - fresnel(1.5, wo.z)) / (1.0 - fresnel(1.5, wi.z));
-        assert!((there / back / bound - 1.0).abs() < 1e-9, "{there} {back} {bound}");
+    // A coat takes its share at both directions.
+    for (metallic, clearcoat_roughness) in [(0.0, 0.0), (0.0, 0.5), (1.0, 0.0)] {
+        let coated = Physical { clearcoat: 1.0, clearcoat_roughness, specular: 0.0, metallic, ..metal(1.0) };
+        let surfel = physical_surfel(&coated, false, true);
+        for i in 0..500 {
+            let (wo, wi) = pair(i);
+            let (there, back) = (surfel.bsdf(wo, wi).x, surfel.bsdf(wi, wo).x);
+            let bound = 1.0 + 1e-9 + if clearcoat_roughness > 0.0 { 0.02 } else { 0.0 };
+            assert!((there / back).max(back / there) < bound, "{coated:?}: {there} {back}");
+        }
     }
 }
 
@@ -337,7 +340,7 @@ fn the_limit_of_no_roughness_is_smooth() {
                     );
                     before = now;
                 }
-                let (rough, smooth) = (at(0.010_001), at(0.009_999));
+                let (rough, smooth) = (at(0.010_051), at(0.010_048));
                 assert!(
                     (rough - smooth).abs().max_element() < 3e-3,
                     "{metallic} {transmission} {degrees}: {rough} {smooth}"

@@ -2,12 +2,9 @@
 
 use crate::gpu::layout::{self, NONE};
 use crate::scene::albedo_table::{ROUGH, STEEP, TABLE};
-use crate::scene::{ChannelMap, Material, Physical, Scene, conductor_average};
+use crate::scene::{COAT_INDEX, ChannelMap, Material, Physical, Scene, conductor_average};
 use std::collections::HashMap;
 use std::f64::consts::TAU;
-
-/// The index of a coat, whose table comes first.
-const COAT_INDEX: f32 = 1.5;
 
 /// All surfaces of a scene behind the tables of their indices, and for each material the texel of its own; 0 where it has none.
 pub(in crate::gpu) fn physical(scene: &Scene) -> (Vec<[u32; 4]>, Vec<u32>) {
@@ -28,14 +25,15 @@ pub(in crate::gpu) fn physical(scene: &Scene) -> (Vec<[u32; 4]>, Vec<u32>) {
     let mut rows = HashMap::new();
     let mut rows_of = |texels: &mut Vec<[u32; 4]>, ior: f32| -> u32 {
         // An infinite index goes by any table.
-        let ior = if ior == 0.0 { COAT_INDEX } else { ior };
+        let ior = if ior == 0.0 { COAT_INDEX as f32 } else { ior };
         *rows.entry(ior.to_bits()).or_insert_with(|| {
             let first = texels.len() as u32;
             texels.extend(TABLE.dielectric_rows(ior.into()).into_iter().map(bits));
             first
         })
     };
-    rows_of(&mut texels, COAT_INDEX);
+    // Coats come first.
+    rows_of(&mut texels, COAT_INDEX as f32);
     for (material, place) in scene.materials.iter().zip(&mut places) {
         if let Some(physical) = &material.physical {
             let surface = surface(material, physical, rows_of(&mut texels, physical.ior));
