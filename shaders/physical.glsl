@@ -14,6 +14,14 @@ const int ROUGHNESSES = 32;
 const int COSINES = 32;
 const int PHYSICAL_TEXELS = 10;
 
+// The same of brushed lobes (src/scene/brushed_table.rs).
+const int ALONG = 16;
+const int RATIOS = 6;
+const int AROUND = 5;
+const int TILTS = 24;
+const int MEANS_ALONG = 31;
+const int MEANS_RATIOS = 11;
+
 // In the order of the texels: whatever follows a vec3 is in its texel's w.
 struct Physical {
     vec3 base;
@@ -188,6 +196,55 @@ float missing_average(float alpha) {
 // Where the tables of indices begin: first that of coats.
 int coat_rows() { return (ROUGH - 1) * STEEP; }
 
+// Where the tables of brushed lobes begin, in scenes that have some.
+int brushed_rows() { return coat_rows() + ROUGHNESSES * (COSINES + 1); }
+
+// The place on their axes, each from 0 to 1, of a direction above microfacets of these widths, the first the larger one.
+vec4 brushed_place(vec2 a, vec3 w) {
+    float ratio = a.y / a.x;
+    vec2 p = vec2(w.x, w.y * ratio);
+    p *= p;
+    float flat_part = p.x + p.y;
+    float longer = sqrt(w.z * w.z + flat_part);
+    // One less the square of the steepness of a direction that is stretched by the ratio.
+    float square = min(a.x * flat_part / ((longer + w.z) * (w.z + a.x * longer)), 1.0);
+    float tilt = sqrt(square / (1.0 + sqrt(1.0 - square)));
+    return vec4(sqrt(a.x), ratio, flat_part > 0.0 ? p.y / flat_part : 0.0, tilt);
+}
+
+// Linear between eight numbers: along x in a pair, along y between pairs, along z between pairs of them.
+float between(uvec4 corners, vec3 at) {
+    vec4 lower = vec4(unpackHalf2x16(corners.x), unpackHalf2x16(corners.y));
+    vec4 upper = vec4(unpackHalf2x16(corners.z), unpackHalf2x16(corners.w));
+    vec4 sides = mix(lower, upper, at.z);
+    vec2 pair = mix(sides.xy, sides.zw, at.y);
+    return mix(pair.x, pair.y, at.x);
+}
+
+// Share of the light that microfacets which reflect all do not send away at once towards a direction above them.
+float missing_towards(vec2 a, vec3 w) {
+    if (!ANISOTROPY || a.x == a.y) return missing(min(w.z, 1.0), a.x);
+    vec4 place = brushed_place(a, w) * vec4(ALONG - 1, RATIOS - 1, AROUND - 1, TILTS - 1);
+    ivec4 before = min(ivec4(place), ivec4(ALONG - 2, RATIOS - 2, AROUND - 2, TILTS - 2));
+    place -= vec4(before);
+    int at = ((before.x * (RATIOS - 1) + before.y) * (AROUND - 1) + before.z) * (TILTS - 1) + before.w + brushed_rows();
+    float narrower = between(texelFetch(physical, at), place.wzy);
+    float wider = between(texelFetch(physical, at + (RATIOS - 1) * (AROUND - 1) * (TILTS - 1)), place.wzy);
+    float root = mix(narrower, wider, place.x);
+    return root * root;
+}
+
+// The mean of that over directions in proportion to their cosine.
+float missing_average_of(vec2 a) {
+    if (!ANISOTROPY || a.x == a.y) return missing_average(a.x);
+    vec2 place = vec2(sqrt(a.x), a.y / a.x) * vec2(MEANS_ALONG - 1, MEANS_RATIOS - 1);
+    ivec2 before = min(ivec2(place), ivec2(MEANS_ALONG - 2, MEANS_RATIOS - 2));
+    place -= vec2(before);
+    vec4 corners = physical_texel(brushed_rows() + ALONG * (RATIOS - 1) * (AROUND - 1) * (TILTS - 1) + before.x * (MEANS_RATIOS - 1) + before.y);
+    vec2 pair = mix(corners.xy, corners.zw, place.x);
+    return mix(pair.x, pair.y, place.y) * a.x * a.x;
+}
+
 // What becomes of light at a rough dielectric: edge, transmitted, inside, transmitted inside (DielectricAlbedo).
 vec4 dielectric_share(int rows, float cosine, float alpha) {
     float r = sqrt(alpha) * float(ROUGHNESSES - 1);
@@ -292,8 +349,10 @@ Lobes physical_lobes(Physical p, vec3 normal, vec3 tangent, bool front, vec3 wo)
     vec2 w = widths(p);
     l.widths = vec2(w.x, max(w.y, LEAST_ALPHA));
     l.alpha = impulse ? 0.0 : ANISOTROPY ? mean_width(l.widths) : w.x;
-    float lost = impulse ? 0.0 : missing(cosine, ANISOTROPY ? round_width(l.widths, l.wo) : w.x);
-    float lost_average = impulse ? 0.0 : missing_average(l.alpha);
+    float lost = impulse ? 0.0 : missing_towards(l.widths, l.wo);
+    float lost_average = impulse ? 0.0 : missing_average_of(l.widths);
+    // Of a round lobe instead, by which the body below goes.
+    float round_average = ANISOTROPY && !impulse ? missing_average(l.alpha) : lost_average;
 
     bool body = ROUGH_TRANSMISSION && p.body != 0u;
     l.inside = body && !front;
@@ -317,7 +376,7 @@ Lobes physical_lobes(Physical p, vec3 normal, vec3 tangent, bool front, vec3 wo)
     // From inside there is nothing between: either the scattering body, or the boundary.
     vec3 body_albedo = insulator * (1.0 - transmission) * p.base;
     if (!l.inside) body_albedo *= entered;
-    l.diffuse = l.inside ? body_albedo / PI : body_albedo / (PI * max(1.0 - dielectric_albedo_average(l, lost_average), LEAST_SHARE));
+    l.diffuse = l.inside ? body_albedo / PI : body_albedo / (PI * max(1.0 - dielectric_albedo_average(l, round_average), LEAST_SHARE));
     vec3 many = l.inside ? vec3(0.0) : l.many;
     vec3 metal_many = multiple_colour(metal_average(p), lost_average);
     vec3 later = lost * mix(many, metal_many, p.metallic);
@@ -395,7 +454,7 @@ vec4 physical_value_and_pdf(Lobes l, vec3 wi) {
     if (l.alpha > 0.0) {
         Microfacet mirror = microfacet_reflection(l.widths, l.wo, wi);
         facet(l, mirror.cosine, reflects, transmits);
-        float absent = ANISOTROPY && l.multiple != vec3(0.0) ? missing(min(wi.z, 1.0), round_width(l.widths, wi)) : lost;
+        float absent = ANISOTROPY && l.multiple != vec3(0.0) ? missing_towards(l.widths, wi) : lost;
         value += mirror.value * reflects + l.multiple * absent;
         pdf += l.shares.y * reflected_share(reflects, transmits) * mirror.pdf;
     }

@@ -5,8 +5,13 @@ use super::microfacet::Ggx;
 use crate::scene::albedo_table::{
     AlbedoTable, COSINES, DielectricAlbedo, INDICES, ROUGH, ROUGHNESSES, ROW, STEEP, cosine_of_steepness, index_of_bent,
 };
+use crate::scene::brushed_table::{
+    ALONG, AROUND, BrushedTable, MEANS_ALONG, MEANS_RATIOS, RATIOS, TILTS, direction_of_place,
+};
 use glam::DVec3;
+use half::f16;
 use rayon::prelude::*;
+use std::f64::consts::FRAC_PI_2;
 
 /// In place of a width of 0, where the albedo depends on the cosine over the width alone.
 const NARROWEST: f64 = 1e-4;
@@ -21,14 +26,24 @@ fn mean_of_visible<const N: usize>(
     n: u32,
     of: impl Fn(&Ggx, DVec3, DVec3) -> [f64; N],
 ) -> [f64; N] {
-    let ggx = Ggx { x: alpha, y: alpha };
     let wo = DVec3::new((1.0 - cosine * cosine).max(0.0).sqrt(), 0.0, cosine);
+    mean_over_turn(&Ggx { x: alpha, y: alpha }, wo, 0.5, n, of)
+}
+
+/// The same for any widths and directions, over so many turns of the microfacets.
+fn mean_over_turn<const N: usize>(
+    ggx: &Ggx,
+    wo: DVec3,
+    turn: f64,
+    n: u32,
+    of: impl Fn(&Ggx, DVec3, DVec3) -> [f64; N],
+) -> [f64; N] {
     let (mut sums, mut weights) = ([0.0; N], 0.0);
     for i in 0..n {
         for j in 0..n {
             let [u, t] = [i, j].map(|i| (f64::from(i) + 0.5) / f64::from(n));
             let (v, weight) = (1.0 - (1.0 - t).powi(3), 3.0 * (1.0 - t).powi(2));
-            let one = of(&ggx, wo, ggx.visible_normal(wo, 0.5 * u, v));
+            let one = of(ggx, wo, ggx.visible_normal(wo, turn * u, v));
             sums.iter_mut().zip(one).for_each(|(sum, one)| *sum += weight * one);
             weights += weight;
         }
@@ -46,6 +61,13 @@ fn shadowed(ggx: &Ggx, wo: DVec3, wi: DVec3) -> f64 {
 pub fn missing(cosine: f64, alpha: f64, n: u32) -> f64 {
     let [missing] =
         mean_of_visible(alpha, cosine.max(GRAZING * alpha), n, |ggx, wo, h| [shadowed(ggx, wo, reflect(wo, h))]);
+    missing
+}
+
+/// [`BrushedTable::missing`].
+pub fn brushed_missing(widths: [f64; 2], wo: DVec3, n: u32) -> f64 {
+    let ggx = Ggx { x: widths[0], y: widths[1] };
+    let [missing] = mean_over_turn(&ggx, wo, 1.0, n, |ggx, wo, h| [shadowed(ggx, wo, reflect(wo, h))]);
     missing
 }
 
@@ -120,5 +142,46 @@ pub fn albedo_table(n: u32) -> AlbedoTable {
         let edge = average(|cosine| all(cosine) * at(cosine).edge);
         table.dielectric[row * ROW + COSINES] = [edge, 0.0, 0.0, 0.0];
     }
+    table
+}
+
+/// The mean over directions in proportion to their cosine, finer towards grazing, of what is alike on both sides of x and of y.
+fn average_around(of: impl Fn(DVec3) -> f64) -> f64 {
+    const TURNS: u32 = 48;
+    const STEPS: u32 = 256;
+    let mut sum = 0.0;
+    for turn in 0..TURNS {
+        let (y, x) = (FRAC_PI_2 * (f64::from(turn) + 0.5) / f64::from(TURNS)).sin_cos();
+        for step in 0..STEPS {
+            let root = (f64::from(step) + 0.5) / f64::from(STEPS);
+            let cosine = root * root;
+            let sine = (1.0 - cosine * cosine).sqrt();
+            sum += of(DVec3::new(sine * x, sine * y, cosine)) * root * cosine;
+        }
+    }
+    4.0 * sum / f64::from(STEPS * TURNS)
+}
+
+/// The table of two widths, each number by `n^2` microfacets. Means are those of what is read between its numbers.
+pub fn brushed_table(n: u32) -> BrushedTable {
+    let axis = |i: usize, numbers: usize| i as f64 / (numbers - 1) as f64;
+    let widths = |along: f64, ratio: f64| {
+        let along = along.powi(2).max(NARROWEST);
+        [along, along * ratio.max(NARROWEST)]
+    };
+    let missing = (0..ALONG * RATIOS * AROUND * TILTS).into_par_iter().map(|k| {
+        let [tilt, around] = [axis(k % TILTS, TILTS), axis(k / TILTS % AROUND, AROUND)];
+        let k = k / TILTS / AROUND;
+        let widths = widths(axis(k / RATIOS, ALONG), axis(k % RATIOS, RATIOS));
+        // As it is kept, so that the means are of what is kept.
+        f16::from_f64(brushed_missing(widths, direction_of_place(widths, around, tilt), n).sqrt()).to_f64()
+    });
+    let mut table = BrushedTable { missing: missing.collect(), missing_average: vec![] };
+    let means = (0..MEANS_ALONG * MEANS_RATIOS).into_par_iter().map(|k| {
+        let widths = widths(axis(k / MEANS_RATIOS, MEANS_ALONG), axis(k % MEANS_RATIOS, MEANS_RATIOS));
+        average_around(|w| table.missing(widths, w)) / widths[0].powi(2)
+    });
+    let means = means.collect();
+    table.missing_average = means;
     table
 }

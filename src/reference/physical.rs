@@ -13,6 +13,7 @@ use super::fresnel::{fresnel, fresnel_conductor, reflect, refract};
 use super::microfacet::{Ggx, Microfacet};
 use super::warp::{cosine_hemisphere, frame};
 use crate::scene::albedo_table::TABLE;
+use crate::scene::brushed_table::BRUSHED;
 use crate::scene::{LEAST_ALPHA, Material, conductor_average};
 use glam::{DMat3, DVec3};
 use std::f64::consts::PI;
@@ -232,6 +233,16 @@ fn multiple_colour(average: DVec3, missing: f64) -> DVec3 {
     average * average * (1.0 - missing) / (1.0 - average * missing)
 }
 
+/// Share of the light that microfacets which reflect all do not send away at once towards a direction above them.
+fn missing_towards(ggx: &Ggx, w: DVec3) -> f64 {
+    if ggx.x == ggx.y { TABLE.missing(w.z.min(1.0), ggx.x) } else { BRUSHED.missing([ggx.x, ggx.y], w) }
+}
+
+/// The mean of that over directions in proportion to their cosine.
+fn missing_average_of(ggx: &Ggx) -> f64 {
+    if ggx.x == ggx.y { TABLE.missing_average(ggx.x) } else { BRUSHED.missing_average([ggx.x, ggx.y]) }
+}
+
 /// What a surface does with light towards one direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lobes {
@@ -281,8 +292,8 @@ impl Lobes {
         let ggx = Ggx { x: along, y: across.max(LEAST_ALPHA) };
         let smooth = p.is_smooth();
         let alpha = if smooth { 0.0 } else { ggx.mean_width() };
-        let missing = if smooth { 0.0 } else { TABLE.missing(cosine, ggx.round(wo)) };
-        let missing_average = if smooth { 0.0 } else { TABLE.missing_average(alpha) };
+        let missing = if smooth { 0.0 } else { missing_towards(&ggx, wo) };
+        let missing_average = if smooth { 0.0 } else { missing_average_of(&ggx) };
 
         let inside = p.body && !front;
         let index = p.index();
@@ -418,7 +429,7 @@ impl Lobes {
         if self.dielectric.alpha > 0.0 {
             let facet = self.ggx.reflection(self.wo, wi);
             let [reflects, _] = self.facet(facet.cosine);
-            let absent = TABLE.missing(cosine, self.ggx.round(wi));
+            let absent = missing_towards(&self.ggx, wi);
             value += facet.value * reflects + self.multiple * absent;
             pdf += facet_share * self.reflected_share(facet.cosine) * facet.pdf;
         }
