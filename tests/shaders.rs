@@ -269,7 +269,9 @@ fn twins() -> Vec<(&'static str, f64)> {
     use luminaire::gpu::specialization::{directions_number, extinction_number, light_sampling_number};
     use luminaire::reference::{light_tree as choice, luminaire as light, normal_map, path, physical, scatter};
     use luminaire::sampling::{CDF_NUMBERS, SENSOR_BLOCK};
-    use luminaire::scene::{Directions, Extinction, Filter, LEAST_ALPHA, LightSampling, albedo_table, brushed_table, light_tree};
+    use luminaire::scene::{
+        Directions, Extinction, Filter, LEAST_ALPHA, LightSampling, albedo_table, brushed_table, light_tree,
+    };
     use std::f64::consts::{FRAC_PI_4, PI};
 
     assert_eq!(Filter::Box.inverse_cdf(0.5).len().div_ceil(4), layout::FILTER_TEXELS);

@@ -46,7 +46,7 @@ pub fn brushed_place([along, across]: [f64; 2], w: DVec3) -> [f64; 4] {
 /// A direction at the last two of these.
 pub fn direction_of_place([along, across]: [f64; 2], around: f64, tilt: f64) -> DVec3 {
     let steep2 = (1.0 - tilt * tilt).powi(2).max(1e-12);
-    let cosine = steep2 * along / (1.0 + along - steep2);
+    let cosine = (steep2 * along / (1.0 + along - steep2)).min(1.0);
     let sine = (1.0 - cosine * cosine).sqrt();
     DVec3::new(sine * (1.0 - around).sqrt(), sine * around.sqrt() * along / across, cosine).normalize()
 }
@@ -81,7 +81,11 @@ impl BrushedTable {
 
     /// The bytes of the file.
     pub fn bytes(&self) -> Vec<u8> {
-        self.missing.iter().chain(&self.missing_average).flat_map(|number| f16::from_f64(*number).to_le_bytes()).collect()
+        self.missing
+            .iter()
+            .chain(&self.missing_average)
+            .flat_map(|number| f16::from_f64(*number).to_le_bytes())
+            .collect()
     }
 
     /// Share of the light that microfacets which reflect all do not send away at once towards `w`; their widths are along x and y, the larger first.
