@@ -35,6 +35,12 @@ vec3 visible_normal(vec2 a, vec3 wo, vec2 u) {
 // The width of a distribution that is the same all around with the same mean square.
 float mean_width(vec2 a) { return a.x == a.y ? a.x : sqrt(0.5 * dot(a, a)); }
 
+// The width of round microfacets that are most like these, seen from w: in the plane of view as wide.
+float seen_width(vec2 a, vec3 w) {
+    vec2 p = a * w.xy;
+    return min(sqrt(dot(p, p) + 0.5 * w.z * w.z * dot(a, a)), 1.0);
+}
+
 // Microfacets that reflect wi into wo, both above.
 Microfacet microfacet_reflection(vec2 a, vec3 wo, vec3 wi) {
     vec3 h = normalize(wo + wi);

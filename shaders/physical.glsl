@@ -21,6 +21,12 @@ const int AROUND = 5;
 const int TILTS = 24;
 const int MEANS_ALONG = 31;
 const int MEANS_RATIOS = 11;
+const int BRUSHED_ALONG = 8;
+const int BRUSHED_RATIOS = 6;
+const int BRUSHED_ASIDE = 8;
+const int BRUSHED_TILTS = 12;
+const int BRUSHED_ROW = 4608;
+const float LEAST_INSIDE = 0.05;    // what leaves a brushed dielectric at least that is seen from inside
 
 // In the order of the texels: whatever follows a vec3 is in its texel's w.
 struct Physical {
@@ -197,7 +203,7 @@ float missing_average(float alpha) {
 int coat_rows() { return (ROUGH - 1) * STEEP; }
 
 // Where the tables of brushed lobes begin, in scenes that have some.
-int brushed_rows() { return coat_rows() + ROUGHNESSES * (COSINES + 1); }
+int brushed_rows() { return coat_rows() + ROUGHNESSES * (COSINES + 1) + BRUSHED_ROW; }
 
 // The place on their axes, each from 0 to 1, of a direction above microfacets of these widths, the first the larger one.
 vec4 brushed_place(vec2 a, vec3 w) {
@@ -257,6 +263,38 @@ vec4 dielectric_share(int rows, float cosine, float alpha) {
     return mix(above, mix(physical_texel(at), physical_texel(at + 1), c - float(j)), r - float(i));
 }
 
+// The root of one less the steepness of a cosine, of which `rest` is missing to 1.
+float tilt(float cosine, float rest, float alpha) {
+    float square = clamp(alpha * rest / (cosine + alpha), 0.0, 1.0);
+    return sqrt(square / (1.0 + sqrt(1.0 - square)));
+}
+
+// The place on the axes of what brushed dielectrics do, but for the index.
+vec4 brushed_dielectric_place(vec2 a, vec3 w) {
+    float beside = length(w.xz);
+    float aside = tilt(beside, w.y * w.y / (1.0 + beside), a.x);
+    return vec4(sqrt(a.x), sqrt(a.y / a.x), aside, tilt(w.z / beside, w.x * w.x / (beside * (beside + w.z)), a.x));
+}
+
+// What becomes of light from w at a brushed dielectric.
+vec4 brushed_dielectric_share(int rows, vec2 a, vec3 w) {
+    const ivec4 lengths = ivec4(BRUSHED_ALONG, BRUSHED_RATIOS, BRUSHED_ASIDE, BRUSHED_TILTS);
+    vec4 place = min(brushed_dielectric_place(a, w), vec4(1.0)) * vec4(lengths - 1);
+    ivec4 before = min(ivec4(place), lengths - 2);
+    place -= vec4(before);
+    vec4 more = vec4(0.0);
+    for (int corner = 0; corner < 16; ++corner) {
+        ivec4 behind = (ivec4(corner) >> ivec4(0, 1, 2, 3)) & 1;
+        vec4 weights = mix(1.0 - place, place, vec4(behind));
+        ivec4 at = before + behind;
+        int texel = ((at.x * BRUSHED_RATIOS + at.y) * BRUSHED_ASIDE + at.z) * BRUSHED_TILTS + at.w;
+        more += weights.x * weights.y * weights.z * weights.w * physical_texel(rows + ROUGHNESSES * (COSINES + 1) + texel);
+    }
+    vec4 share = dielectric_share(rows, min(w.z, 1.0), seen_width(a, w)) + more;
+    share.z = max(share.z, LEAST_INSIDE);
+    return vec4(share.x, max(share.y, 0.0), share.z, clamp(share.w, 0.0, share.z));
+}
+
 // The mean of what is reflected by (F - F0) / (1 - F0).
 float edge_average(int rows, float alpha) {
     float r = sqrt(alpha) * float(ROUGHNESSES - 1);
@@ -275,10 +313,9 @@ vec3 dielectric_reflectance(Lobes l, float cosine) {
     return l.f0 + (l.p.specular - l.f0) * ((f - l.normal) / (1.0 - l.normal));
 }
 
-// The share that the dielectric reflects in all, seen at a cosine, where this much is missing; from inside only about.
-vec3 dielectric_albedo(Lobes l, float cosine, float missing) {
+// The share that the dielectric reflects in all, seen at a cosine, where this becomes of light and this much is missing; from inside only about.
+vec3 dielectric_albedo(Lobes l, float cosine, vec4 share, float missing) {
     if (l.alpha == 0.0) return dielectric_reflectance(l, cosine);
-    vec4 share = dielectric_share(int(l.p.rows), cosine, l.alpha);
     if (l.inside) return vec3(1.0 - share.w / share.z);
     return (1.0 - missing) * (l.f0 + (l.p.specular - l.f0) * share.x) + missing * l.many;
 }
@@ -362,7 +399,10 @@ Lobes physical_lobes(Physical p, vec3 normal, vec3 tangent, bool front, vec3 wo)
     l.many = multiple_colour(average, lost_average);
     l.eta = l.inside ? 1.0 / index : index;
     l.normal = fresnel(index, 1.0);
-    vec3 reflects = dielectric_albedo(l, cosine, lost);
+    vec4 share = vec4(0.0);
+    if (ANISOTROPY && !impulse && l.widths.x != l.widths.y && p.metallic < 1.0) share = brushed_dielectric_share(int(p.rows), l.widths, l.wo);
+    else if (!impulse) share = dielectric_share(int(p.rows), cosine, l.alpha);
+    vec3 reflects = dielectric_albedo(l, cosine, share, lost);
 
     float coat = 0.0;
     float coat_width = p.clearcoat_roughness * p.clearcoat_roughness;
@@ -389,7 +429,6 @@ Lobes physical_lobes(Physical p, vec3 normal, vec3 tangent, bool front, vec3 wo)
     l.straight = true;
     vec3 through = vec3(0.0);
     if (ROUGH_TRANSMISSION) {
-        vec4 share = dielectric_share(int(p.rows), cosine, l.alpha);
         if (l.inside) l.reflected = impulse ? transmission : transmission / ((1.0 - lost) * share.z);
         through = insulator * transmission * p.base * entered;
         // What is hardly bent is hardly spread.
@@ -449,7 +488,10 @@ vec4 physical_value_and_pdf(Lobes l, vec3 wi) {
     float lost = 0.0;
     if (l.alpha > 0.0 && (l.multiple != vec3(0.0) || l.diffuse != vec3(0.0))) lost = missing(min(wi.z, 1.0), l.alpha);
     vec3 value = l.diffuse;
-    if (!l.inside && value != vec3(0.0)) value *= 1.0 - dielectric_albedo(l, min(wi.z, 1.0), lost);
+    if (!l.inside && value != vec3(0.0)) {
+        vec4 share = l.alpha == 0.0 ? vec4(0.0) : dielectric_share(int(l.p.rows), min(wi.z, 1.0), l.alpha);
+        value *= 1.0 - dielectric_albedo(l, min(wi.z, 1.0), share, lost);
+    }
     float pdf = l.shares.x * wi.z * (1.0 / PI);
     if (l.alpha > 0.0) {
         Microfacet mirror = microfacet_reflection(l.widths, l.wo, wi);

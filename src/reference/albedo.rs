@@ -6,7 +6,9 @@ use crate::scene::albedo_table::{
     AlbedoTable, COSINES, DielectricAlbedo, INDICES, ROUGH, ROUGHNESSES, ROW, STEEP, cosine_of_steepness, index_of_bent,
 };
 use crate::scene::brushed_table::{
-    ALONG, AROUND, BrushedTable, MEANS_ALONG, MEANS_RATIOS, RATIOS, TILTS, direction_of_place,
+    ALONG, AROUND, BRUSHED_ALONG, BRUSHED_ASIDE, BRUSHED_INDICES, BRUSHED_RATIOS, BRUSHED_ROW, BRUSHED_TILTS,
+    BrushedTable, MEANS_ALONG, MEANS_RATIOS, RATIOS, TILTS, direction_of_dielectric_place, direction_of_place,
+    seen_width,
 };
 use glam::DVec3;
 use half::f16;
@@ -17,6 +19,9 @@ use std::f64::consts::FRAC_PI_2;
 const NARROWEST: f64 = 1e-4;
 /// In place of a cosine of 0.
 const GRAZING: f64 = 1e-6;
+
+/// In place of an index of 1, where nothing is bent: the place of another one on its axis.
+const LEAST_BENT: f64 = 0.1;
 
 /// The mean of a function of the microfacets that are seen at a cosine from the normal, by the midpoint rule with `n^2` of them. They lie about the plane of
 /// incidence alike on both sides. Of narrow distributions only the few that are tilted most send light to other microfacets: they are taken more densely.
@@ -80,21 +85,34 @@ pub fn dielectric_albedo(cosine: f64, alpha: f64, eta: f64, n: u32) -> Dielectri
         let (f, inside) = (fresnel(eta, cosine), fresnel(1.0 / eta, cosine));
         return DielectricAlbedo { edge: edge(f), transmitted: 1.0 - f, inside: 1.0, transmitted_inside: 1.0 - inside };
     }
-    let both = |ggx: &Ggx, wo: DVec3, h: DVec3, eta: f64| {
+    of_shares(mean_of_visible(alpha, cosine.max(GRAZING * alpha), n, |ggx, wo, h| shares(ggx, wo, h, eta)))
+}
+
+/// Of a microfacet: what it sends away at once if it reflects all, and of that what [`DielectricAlbedo`] has, not yet divided.
+fn shares(ggx: &Ggx, wo: DVec3, h: DVec3, eta: f64) -> [f64; 5] {
+    let normal = fresnel(eta, 1.0);
+    let edge = |f: f64| (f - normal) / (1.0 - normal);
+    let both = |eta: f64| {
         let cosine = wo.dot(h).min(1.0);
         let f = fresnel(eta, cosine);
         let transmitted = refract(wo, h, eta).filter(|wi| wi.z < 0.0).map_or(0.0, |wi| 1.0 / (1.0 + ggx.lambda(wi)));
         (f, 1.0 - shadowed(ggx, wo, reflect(wo, h)), (1.0 - f) * transmitted)
     };
-    let [all, edge, transmitted, inside, transmitted_inside] =
-        mean_of_visible(alpha, cosine.max(GRAZING * alpha), n, |ggx, wo, h| {
-            let (f, reflected, transmitted) = both(ggx, wo, h, eta);
-            let (f_inside, _, transmitted_inside) = both(ggx, wo, h, 1.0 / eta);
-            [reflected, edge(f) * reflected, transmitted, f_inside * reflected + transmitted_inside, transmitted_inside]
-        });
+    let (f, reflected, transmitted) = both(eta);
+    let (f_inside, _, transmitted_inside) = both(1.0 / eta);
+    [reflected, edge(f) * reflected, transmitted, f_inside * reflected + transmitted_inside, transmitted_inside]
+}
+
+fn of_shares([all, edge, transmitted, inside, transmitted_inside]: [f64; 5]) -> DielectricAlbedo {
     let [edge, transmitted, inside, transmitted_inside] =
         [edge, transmitted, inside, transmitted_inside].map(|x| x / all);
     DielectricAlbedo { edge, transmitted, inside, transmitted_inside }
+}
+
+/// [`BrushedTable::dielectric`].
+pub fn brushed_dielectric_albedo(widths: [f64; 2], wo: DVec3, eta: f64, n: u32) -> DielectricAlbedo {
+    let ggx = Ggx { x: widths[0], y: widths[1] };
+    of_shares(mean_over_turn(&ggx, wo, 1.0, n, |ggx, wo, h| shares(ggx, wo, h, eta)))
 }
 
 /// `2 int_0^1 of(cosine) cosine dcosine`, finer towards grazing.
@@ -176,12 +194,30 @@ pub fn brushed_table(n: u32) -> BrushedTable {
         // As it is kept, so that the means are of what is kept.
         f16::from_f64(brushed_missing(widths, direction_of_place(widths, around, tilt), n).sqrt()).to_f64()
     });
-    let mut table = BrushedTable { missing: missing.collect(), missing_average: vec![] };
+    let mut table = BrushedTable { missing: missing.collect(), missing_average: vec![], dielectric: vec![] };
     let means = (0..MEANS_ALONG * MEANS_RATIOS).into_par_iter().map(|k| {
         let widths = widths(axis(k / MEANS_RATIOS, MEANS_ALONG), axis(k % MEANS_RATIOS, MEANS_RATIOS));
         average_around(|w| table.missing(widths, w)) / widths[0].powi(2)
     });
     let means = means.collect();
     table.missing_average = means;
+    let dielectric = (0..BRUSHED_INDICES * BRUSHED_ROW).into_par_iter().map(|k| {
+        let (tilt, k) = (axis(k % BRUSHED_TILTS, BRUSHED_TILTS), k / BRUSHED_TILTS);
+        let (aside, k) = (axis(k % BRUSHED_ASIDE, BRUSHED_ASIDE), k / BRUSHED_ASIDE);
+        let (ratio, k) = (axis(k % BRUSHED_RATIOS, BRUSHED_RATIOS).powi(2), k / BRUSHED_RATIOS);
+        let (along, k) = (axis(k % BRUSHED_ALONG, BRUSHED_ALONG), k / BRUSHED_ALONG);
+        let (widths, eta) = (widths(along, ratio), index_of_bent(axis(k, BRUSHED_INDICES).max(LEAST_BENT)));
+        let wo = direction_of_dielectric_place(widths[0], aside, tilt);
+        let brushed = brushed_dielectric_albedo(widths, wo, eta, n / 2);
+        let round = dielectric_albedo(wo.z, seen_width(widths, wo), eta, n / 2);
+        [
+            brushed.edge - round.edge,
+            brushed.transmitted - round.transmitted,
+            brushed.inside - round.inside,
+            brushed.transmitted_inside - round.transmitted_inside,
+        ]
+    });
+    let dielectric = dielectric.collect();
+    table.dielectric = dielectric;
     table
 }

@@ -12,7 +12,7 @@
 use super::fresnel::{fresnel, fresnel_conductor, reflect, refract};
 use super::microfacet::{Ggx, Microfacet};
 use super::warp::{cosine_hemisphere, frame};
-use crate::scene::albedo_table::TABLE;
+use crate::scene::albedo_table::{DielectricAlbedo, TABLE};
 use crate::scene::brushed_table::BRUSHED;
 use crate::scene::{LEAST_ALPHA, Material, conductor_average};
 use glam::{DMat3, DVec3};
@@ -207,12 +207,11 @@ impl Dielectric {
         if self.alpha == 0.0 { 0.0 } else { TABLE.missing(cosine, self.alpha) }
     }
 
-    /// The share that the surface reflects in all, seen at a cosine, where this much is missing; from inside only about.
-    fn albedo(&self, cosine: f64, missing: f64) -> DVec3 {
+    /// The share that the surface reflects in all, seen at a cosine, where this becomes of light and this much is missing; from inside only about.
+    fn albedo(&self, cosine: f64, share: &DielectricAlbedo, missing: f64) -> DVec3 {
         if self.alpha == 0.0 {
             return self.reflectance(cosine);
         }
-        let share = TABLE.dielectric(cosine, self.alpha, self.index);
         if self.inside {
             return DVec3::splat(1.0 - share.transmitted_inside / share.inside);
         }
@@ -303,8 +302,12 @@ impl Lobes {
         let eta = if inside { 1.0 / index } else { index };
         let normal_reflectance = fresnel(index, 1.0);
         let dielectric = Dielectric { eta, index, inside, f0, f90, normal: normal_reflectance, alpha, multiple };
-        let reflects = dielectric.albedo(cosine, missing);
-        let share = TABLE.dielectric(cosine, alpha, index);
+        let brushed = !smooth && ggx.x != ggx.y && p.metallic < 1.0;
+        let share = match brushed {
+            true => BRUSHED.dielectric([ggx.x, ggx.y], wo, index),
+            false => TABLE.dielectric(cosine, alpha, index),
+        };
+        let reflects = dielectric.albedo(cosine, &share, missing);
 
         let coated = p.clearcoat > 0.0 && (front || !p.body);
         let coat_width = p.clearcoat_roughness * p.clearcoat_roughness;
@@ -423,7 +426,8 @@ impl Lobes {
         let missing = self.dielectric.missing(cosine);
         let mut value = self.diffuse;
         if !self.dielectric.inside {
-            value *= DVec3::ONE - self.dielectric.albedo(cosine, missing);
+            let share = TABLE.dielectric(cosine, self.dielectric.alpha, self.dielectric.index);
+            value *= DVec3::ONE - self.dielectric.albedo(cosine, &share, missing);
         }
         let mut pdf = cosine_share * wi.z / PI;
         if self.dielectric.alpha > 0.0 {

@@ -27,6 +27,7 @@ fn surfaces() -> Vec<(Physical, bool)> {
         all.push((plastic.clone(), false));
         all.push((copper(roughness), false));
         all.push((Physical { metallic: 1.0, anisotropy: 0.6, ..plastic.clone() }, false));
+        all.push((Physical { anisotropy: 0.8, metallic: 0.2, transmission: 0.4, ..plastic.clone() }, false));
         for ior in [1.05, 1.5, 2.4] {
             all.push((Physical { transmission: 1.0, ior, ..plastic.clone() }, false));
         }

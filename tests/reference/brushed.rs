@@ -70,3 +70,49 @@ fn white_brushed_metal_is_white() {
     println!("white brushed metals are off by at most {off:.1e}: {what}");
     assert!(off <= 5e-3, "{what}");
 }
+
+/// The white brushed dielectrics of the following test: transmission, thin, seen from outside, and by how much they may be off.
+const DIELECTRICS: [(&str, f32, bool, bool, f64, f64); 4] = [
+    ("plastic", 0.0, false, true, 0.02, 0.004),
+    ("sheet", 1.0, true, true, 0.02, 0.004),
+    ("glass", 1.0, false, true, 0.04, 0.01),
+    ("glass from inside", 1.0, false, false, 0.1, 0.02),
+];
+
+/// White brushed dielectrics are white as far as the numbers of the table lie close enough: over roughness, strength, index, angle and azimuth.
+#[test]
+fn white_brushed_dielectrics_are_nearly_white() {
+    for (name, transmission, thin, front, most, most_rms) in DIELECTRICS {
+        let mut cases = vec![];
+        for roughness in [0.07, 0.25, 0.45, 0.7] {
+            for anisotropy in [0.2, 0.5, 0.75, 1.0] {
+                for ior in [1.2, 1.5, 2.0] {
+                    for degrees in [0.0, 40.0, 70.0, 85.0] {
+                        cases.extend([0.0, 35.0, 70.0, 90.0].map(|turn| (roughness, anisotropy, ior, degrees, turn)));
+                    }
+                }
+            }
+        }
+        let all: Vec<(f64, String)> = cases
+            .par_iter()
+            .map(|(roughness, anisotropy, ior, degrees, turn)| {
+                let (roughness, anisotropy, ior) = (*roughness, *anisotropy, *ior);
+                let p = Physical { roughness, anisotropy, ior, transmission, ..Physical::default() };
+                let albedo = albedo_of(&physical_surfel(&p, thin, front), turned(*degrees, *turn), 1_500).x;
+                let what = format!(
+                    "{name}, roughness {roughness}, anisotropy {anisotropy}, index {ior}, at {degrees}, {turn} degrees: {albedo}"
+                );
+                (albedo - 1.0, what)
+            })
+            .collect();
+        let rms = (all.iter().map(|(off, _)| off * off).sum::<f64>() / all.len() as f64).sqrt();
+        for (off, what) in
+            [all.iter().min_by(|a, b| a.0.total_cmp(&b.0)), all.iter().max_by(|a, b| a.0.total_cmp(&b.0))]
+                .map(|extreme| extreme.expect("some"))
+        {
+            println!("{what} ({off:.1e}, mean {rms:.1e})");
+            assert!(off.abs() <= most, "{what}");
+        }
+        assert!(rms <= most_rms, "{name}: {rms}");
+    }
+}

@@ -27,6 +27,7 @@ pub(in crate::gpu) fn physical(scene: &Scene) -> (Vec<[u32; 4]>, Vec<u32>) {
         }
     }
     texels.extend(TABLE.missing_average.windows(2).map(|pair| bits([pair[0], pair[1], 0.0, 0.0])));
+    let brushes = scene.materials.iter().any(|m| m.physical.as_ref().is_some_and(|p| p.anisotropy > 0.0));
     let mut rows = HashMap::new();
     let mut rows_of = |texels: &mut Vec<[u32; 4]>, ior: f32| -> u32 {
         // An infinite index goes by any table.
@@ -34,11 +35,14 @@ pub(in crate::gpu) fn physical(scene: &Scene) -> (Vec<[u32; 4]>, Vec<u32>) {
         *rows.entry(ior.to_bits()).or_insert_with(|| {
             let first = texels.len() as u32;
             texels.extend(TABLE.dielectric_rows(ior.into()).into_iter().map(bits));
+            if brushes {
+                texels.extend(BRUSHED.dielectric_row(ior.into()).into_iter().map(bits));
+            }
             first
         })
     };
     rows_of(&mut texels, COAT_INDEX);
-    if scene.materials.iter().any(|m| m.physical.as_ref().is_some_and(|p| p.anisotropy > 0.0)) {
+    if brushes {
         brushed(&mut texels);
     }
     for (material, place) in scene.materials.iter().zip(&mut places) {
