@@ -25,6 +25,8 @@ COPPER = ([0.2004376970, 0.9240334304, 1.1022119527], [3.9129485033, 2.452847701
 # Points a side of the quadrature over microfacets, and of the tables over sqrt(cosine).
 NODES = 96
 STEPS = 128
+# And over the azimuth, where it matters.
+TURNS = 24
 
 
 # The integrals -----------------------------------------------------------------------------------------------------------------
@@ -85,6 +87,16 @@ def once(mu, alpha, eta):
     return seen.mean(), (f * seen).mean(), ((1 - f) * through).mean()
 
 
+def brushed_once(mu, phi, x, y):
+    """Of a distribution of two widths seen from a direction: what microfacets that reflect all reflect once."""
+    h, wo = normals(mu, phi, x, y)
+    wi = 2 * (h * wo[:, None]).sum(0) * h - wo[:, None]
+    up = wi[2] > 1e-9
+    wi[2] = np.where(up, wi[2], 1.0)
+    lo, li = smith(wo, x, y), smith(wi, x, y)
+    return np.where(up, (1 + lo) / (1 + lo + li), 0.0).mean()
+
+
 def even(values):
     """The mean over directions in proportion to their cosine, of values at cosines t^2 for even t in [0, 1]: the integral of 4 t^3 dt."""
     t = np.linspace(0, 1, len(values))
@@ -113,15 +125,15 @@ class Compensated(mi.BSDF):
         self.dielectric = ior > 0
         round_width = math.sqrt(0.5 * (self.x**2 + self.y**2))
         average = np.array([props[f"average_{c}"] for c in "rgb"])
-        if self.x == self.y:
-            self.widths = None
+        self.turns = 1 if self.x == self.y else TURNS
+        if self.turns == 1:
             table = np.array([once(mu, round_width, ior if self.dielectric else None) for mu in grid()])
             missing = 1 - table[:, 0]
         else:
-            # What is missing at a brushed surface is taken from a round one, whose width goes with the direction: luminaire says so, and so it is done here.
-            self.widths = np.linspace(0.01, 1, 48)
-            missing = np.array([[1 - once(mu, round_width * r, None)[0] for mu in grid()] for r in self.widths])
-        missing_average = float(even(missing if self.widths is None else missing[-1]))
+            turns = np.linspace(0, np.pi / 2, TURNS)
+            missing = np.array([[1 - brushed_once(mu, phi, self.x, self.y) for mu in grid()] for phi in turns])
+        averages = np.atleast_1d(even(np.atleast_2d(missing).T))
+        missing_average = float(averages[0] if self.turns == 1 else (averages[1:] + averages[:-1]).mean() / 2)
         multiple = average**2 * (1 - missing_average) / (1 - average * missing_average)
         wide = min(max((round_width - 0.04) / 0.21, 0), 1)
         self.missing = mi.Float(np.ascontiguousarray(missing.ravel(), dtype=np.float32))
@@ -149,12 +161,10 @@ class Compensated(mi.BSDF):
 
     def absent(self, w):
         mu = dr.abs(w.z)
-        if self.widths is None:
+        if self.turns == 1:
             return self.at(self.missing, mu)
-        r = dr.maximum(dr.sqrt(dr.sqrt(dr.maximum(1 - w.x * w.x, 0))), 0.01)
-        n = len(self.widths)
-        place = (r - 0.01) / 0.99 * (n - 1)
-        i = dr.minimum(mi.UInt32(dr.maximum(place, 0)), n - 2)
+        place = dr.atan2(dr.abs(w.y), dr.abs(w.x)) * (2 / math.pi * (self.turns - 1))
+        i = dr.minimum(mi.UInt32(place), self.turns - 2)
         f = place - mi.Float(i)
         low, high = (self.at(self.missing, mu, (i + k) * STEPS) for k in (0, 1))
         return low + f * (high - low)

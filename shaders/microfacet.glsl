@@ -1,8 +1,6 @@
 // Rough surfaces as many small smooth ones (twins: src/reference/microfacet.rs). Directions are in the surface's frame, its normal +z; wo is above it;
 // `a` has the widths of the distribution along x and y.
 
-const float LEAST_ROUND = 0.01;     // what is left at least of round_width
-
 // What microfacets that reflect or transmit all are worth at a pair of directions.
 struct Microfacet {
     float value;     // per steradian, without the cosine; of refraction as shares of energy
@@ -37,10 +35,10 @@ vec3 visible_normal(vec2 a, vec3 wo, vec2 u) {
 // The width of a distribution that is the same all around with the same mean square.
 float mean_width(vec2 a) { return a.x == a.y ? a.x : sqrt(0.5 * dot(a, a)); }
 
-// The width of a distribution that is the same all around, of which about as much is missing towards wo.
-float round_width(vec2 a, vec3 wo) {
-    if (a.x == a.y) return a.x;
-    return mean_width(a) * max(sqrt(sqrt(max(1.0 - wo.x * wo.x, 0.0))), LEAST_ROUND);
+// The width of round microfacets that are most like these, seen from w: in the plane of view as wide.
+float seen_width(vec2 a, vec3 w) {
+    vec2 p = a * w.xy;
+    return min(sqrt(dot(p, p) + 0.5 * w.z * w.z * dot(a, a)), 1.0);
 }
 
 // Microfacets that reflect wi into wo, both above.

@@ -15,6 +15,20 @@ const int ROUGHNESSES = 32;
 const int COSINES = 32;
 const int PHYSICAL_TEXELS = 10;
 
+// The same of brushed lobes (src/scene/brushed_table.rs).
+const int ALONG = 16;
+const int RATIOS = 6;
+const int AROUND = 5;
+const int TILTS = 24;
+const int MEANS_ALONG = 31;
+const int MEANS_RATIOS = 11;
+const int BRUSHED_ALONG = 8;
+const int BRUSHED_RATIOS = 6;
+const int BRUSHED_ASIDE = 8;
+const int BRUSHED_TILTS = 12;
+const int BRUSHED_ROW = 4608;
+const float LEAST_INSIDE = 0.05;    // what leaves a brushed dielectric at least that is seen from inside
+
 // In the order of the texels: whatever follows a vec3 is in its texel's w.
 struct Physical {
     vec3 base;
@@ -194,6 +208,55 @@ float missing_average(float alpha) {
 // Where the tables of indices begin: first that of coats.
 int coat_rows() { return (ROUGH - 1) * STEEP; }
 
+// Where the tables of brushed lobes begin, in scenes that have some.
+int brushed_rows() { return coat_rows() + ROUGHNESSES * (COSINES + 1) + BRUSHED_ROW; }
+
+// The place on their axes, each from 0 to 1, of a direction above microfacets of these widths, the first the larger one.
+vec4 brushed_place(vec2 a, vec3 w) {
+    float ratio = a.y / a.x;
+    vec2 p = vec2(w.x, w.y * ratio);
+    p *= p;
+    float flat_part = p.x + p.y;
+    float longer = sqrt(w.z * w.z + flat_part);
+    // One less the square of the steepness of a direction that is stretched by the ratio.
+    float square = min(a.x * flat_part / ((longer + w.z) * (w.z + a.x * longer)), 1.0);
+    float tilt = sqrt(square / (1.0 + sqrt(1.0 - square)));
+    return vec4(sqrt(a.x), ratio, flat_part > 0.0 ? p.y / flat_part : 0.0, tilt);
+}
+
+// Linear between eight numbers: along x in a pair, along y between pairs, along z between pairs of them.
+float between(uvec4 corners, vec3 at) {
+    vec4 lower = vec4(unpackHalf2x16(corners.x), unpackHalf2x16(corners.y));
+    vec4 upper = vec4(unpackHalf2x16(corners.z), unpackHalf2x16(corners.w));
+    vec4 sides = mix(lower, upper, at.z);
+    vec2 pair = mix(sides.xy, sides.zw, at.y);
+    return mix(pair.x, pair.y, at.x);
+}
+
+// Share of the light that microfacets which reflect all do not send away at once towards a direction above them.
+float missing_towards(vec2 a, vec3 w) {
+    if (!ANISOTROPY || a.x == a.y) return missing(min(w.z, 1.0), a.x);
+    vec4 place = brushed_place(a, w) * vec4(ALONG - 1, RATIOS - 1, AROUND - 1, TILTS - 1);
+    ivec4 before = min(ivec4(place), ivec4(ALONG - 2, RATIOS - 2, AROUND - 2, TILTS - 2));
+    place -= vec4(before);
+    int at = ((before.x * (RATIOS - 1) + before.y) * (AROUND - 1) + before.z) * (TILTS - 1) + before.w + brushed_rows();
+    float narrower = between(texelFetch(physical, at), place.wzy);
+    float wider = between(texelFetch(physical, at + (RATIOS - 1) * (AROUND - 1) * (TILTS - 1)), place.wzy);
+    float root = mix(narrower, wider, place.x);
+    return root * root;
+}
+
+// The mean of that over directions in proportion to their cosine.
+float missing_average_of(vec2 a) {
+    if (!ANISOTROPY || a.x == a.y) return missing_average(a.x);
+    vec2 place = vec2(sqrt(a.x), a.y / a.x) * vec2(MEANS_ALONG - 1, MEANS_RATIOS - 1);
+    ivec2 before = min(ivec2(place), ivec2(MEANS_ALONG - 2, MEANS_RATIOS - 2));
+    place -= vec2(before);
+    vec4 corners = physical_texel(brushed_rows() + ALONG * (RATIOS - 1) * (AROUND - 1) * (TILTS - 1) + before.x * (MEANS_RATIOS - 1) + before.y);
+    vec2 pair = mix(corners.xy, corners.zw, place.x);
+    return mix(pair.x, pair.y, place.y) * a.x * a.x;
+}
+
 // What becomes of light at a rough dielectric: edge, transmitted, inside, transmitted inside (DielectricAlbedo).
 vec4 dielectric_share(int rows, float cosine, float alpha) {
     float r = sqrt(alpha) * float(ROUGHNESSES - 1);
@@ -204,6 +267,38 @@ vec4 dielectric_share(int rows, float cosine, float alpha) {
     vec4 above = mix(physical_texel(at), physical_texel(at + 1), c - float(j));
     at += COSINES + 1;
     return mix(above, mix(physical_texel(at), physical_texel(at + 1), c - float(j)), r - float(i));
+}
+
+// The root of one less the steepness of a cosine, of which `rest` is missing to 1.
+float tilt(float cosine, float rest, float alpha) {
+    float square = clamp(alpha * rest / (cosine + alpha), 0.0, 1.0);
+    return sqrt(square / (1.0 + sqrt(1.0 - square)));
+}
+
+// The place on the axes of what brushed dielectrics do, but for the index.
+vec4 brushed_dielectric_place(vec2 a, vec3 w) {
+    float beside = length(w.xz);
+    float aside = tilt(beside, w.y * w.y / (1.0 + beside), a.x);
+    return vec4(sqrt(a.x), sqrt(a.y / a.x), aside, tilt(w.z / beside, w.x * w.x / (beside * (beside + w.z)), a.x));
+}
+
+// What becomes of light from w at a brushed dielectric.
+vec4 brushed_dielectric_share(int rows, vec2 a, vec3 w) {
+    const ivec4 lengths = ivec4(BRUSHED_ALONG, BRUSHED_RATIOS, BRUSHED_ASIDE, BRUSHED_TILTS);
+    vec4 place = min(brushed_dielectric_place(a, w), vec4(1.0)) * vec4(lengths - 1);
+    ivec4 before = min(ivec4(place), lengths - 2);
+    place -= vec4(before);
+    vec4 more = vec4(0.0);
+    for (int corner = 0; corner < 16; ++corner) {
+        ivec4 behind = (ivec4(corner) >> ivec4(0, 1, 2, 3)) & 1;
+        vec4 weights = mix(1.0 - place, place, vec4(behind));
+        ivec4 at = before + behind;
+        int texel = ((at.x * BRUSHED_RATIOS + at.y) * BRUSHED_ASIDE + at.z) * BRUSHED_TILTS + at.w;
+        more += weights.x * weights.y * weights.z * weights.w * physical_texel(rows + ROUGHNESSES * (COSINES + 1) + texel);
+    }
+    vec4 share = dielectric_share(rows, min(w.z, 1.0), seen_width(a, w)) + more;
+    share.z = max(share.z, LEAST_INSIDE);
+    return vec4(share.x, max(share.y, 0.0), share.z, clamp(share.w, 0.0, share.z));
 }
 
 // The mean of what is reflected by (F - F0) / (1 - F0).
@@ -232,10 +327,9 @@ vec3 dielectric_reflectance(Lobes l, float cosine) {
 // The width by which the dielectric's tables go.
 float dielectric_alpha(Lobes l) { return l.flat_facets ? 0.0 : l.alpha; }
 
-// The share that the dielectric reflects in all, seen at a cosine, where this much is missing; from inside only about.
-vec3 dielectric_albedo(Lobes l, float cosine, float missing) {
+// The share that the dielectric reflects in all, seen at a cosine, where this becomes of light and this much is missing; from inside only about.
+vec3 dielectric_albedo(Lobes l, float cosine, vec4 share, float missing) {
     if (dielectric_alpha(l) == 0.0) return dielectric_reflectance(l, cosine);
-    vec4 share = dielectric_share(int(l.p.rows), cosine, l.alpha);
     if (l.inside) return vec3(1.0 - share.w / share.z);
     return (1.0 - missing) * edge_colour(l.f0, l.p.specular, l.normal, share.x) + missing * l.many;
 }
@@ -323,8 +417,10 @@ Lobes physical_lobes(Physical p, vec3 normal, vec3 coat_normal, vec3 tangent, bo
     vec2 w = widths(p);
     l.widths = vec2(w.x, max(w.y, LEAST_ALPHA));
     l.alpha = impulse ? 0.0 : ANISOTROPY ? mean_width(l.widths) : w.x;
-    float lost = impulse ? 0.0 : missing(cosine, ANISOTROPY ? round_width(l.widths, l.wo) : w.x);
-    float lost_average = impulse ? 0.0 : missing_average(l.alpha);
+    float lost = impulse ? 0.0 : missing_towards(l.widths, l.wo);
+    float lost_average = impulse ? 0.0 : missing_average_of(l.widths);
+    // Of a round lobe instead, by which the body below goes.
+    float round_average = ANISOTROPY && !impulse ? missing_average(l.alpha) : lost_average;
 
     bool body = ROUGH_TRANSMISSION && p.body != 0u;
     l.inside = body && !front;
@@ -337,7 +433,10 @@ Lobes physical_lobes(Physical p, vec3 normal, vec3 coat_normal, vec3 tangent, bo
     vec3 average = edge_colour(l.f0, p.specular, l.normal, edge_average(int(p.rows), 0.0));
     l.many = l.flat_facets ? vec3(0.0) : multiple_colour(average, lost_average);
     l.eta = l.inside ? 1.0 / index : index;
-    vec3 reflects = dielectric_albedo(l, cosine, lost);
+    vec4 share = vec4(0.0);
+    if (ANISOTROPY && !impulse && l.widths.x != l.widths.y && p.metallic < 1.0) share = brushed_dielectric_share(int(p.rows), l.widths, l.wo);
+    else if (!impulse) share = dielectric_share(int(p.rows), cosine, l.alpha);
+    vec3 reflects = dielectric_albedo(l, cosine, share, lost);
 
     float coat = 0.0;
     l.clearcoat = 0.0;
@@ -363,7 +462,7 @@ Lobes physical_lobes(Physical p, vec3 normal, vec3 coat_normal, vec3 tangent, bo
     // From inside there is nothing between: either the scattering body, or the boundary.
     vec3 body_albedo = insulator * (1.0 - transmission) * p.base;
     if (!l.inside) body_albedo *= entered;
-    vec3 let_in = 1.0 - dielectric_albedo_average(l, lost_average);
+    vec3 let_in = 1.0 - dielectric_albedo_average(l, round_average);
     if (CLEARCOATS && l.clearcoat > 0.0) {
         // Both layers let in less near grazing.
         vec3 both = (l.clearcoat * (1.0 - fresnel(COAT_INDEX, 1.0)) * EDGE_COVARIANCE) * max(p.specular - l.f0, 0.0);
@@ -381,7 +480,6 @@ Lobes physical_lobes(Physical p, vec3 normal, vec3 coat_normal, vec3 tangent, bo
     l.transmitted = vec3(0.0);
     vec3 through = vec3(0.0);
     if (ROUGH_TRANSMISSION) {
-        vec4 share = dielectric_share(int(p.rows), cosine, l.alpha);
         if (l.inside) l.reflected = transmission;
         if (l.flat_facets) l.reflected /= 1.0 - lost;
         else if (l.inside && !impulse) l.reflected /= (1.0 - lost) * share.z;
@@ -445,12 +543,15 @@ vec4 physical_value_and_pdf(Lobes l, vec3 wi) {
     float passed = coat_passed(l, wi);
     vec3 value = l.diffuse;
     if (!l.inside) value *= passed;
-    if (!l.inside && value != vec3(0.0)) value *= 1.0 - dielectric_albedo(l, min(wi.z, 1.0), lost);
+    if (!l.inside && value != vec3(0.0)) {
+        vec4 share = l.alpha == 0.0 ? vec4(0.0) : dielectric_share(int(l.p.rows), min(wi.z, 1.0), l.alpha);
+        value *= 1.0 - dielectric_albedo(l, min(wi.z, 1.0), share, lost);
+    }
     float pdf = l.shares.x * wi.z * (1.0 / PI);
     if (l.alpha > 0.0) {
         Microfacet mirror = microfacet_reflection(l.widths, l.wo, wi);
         facet(l, mirror.cosine, reflects, transmits);
-        float absent = ANISOTROPY && l.multiple != vec3(0.0) ? missing(min(wi.z, 1.0), round_width(l.widths, wi)) : lost;
+        float absent = ANISOTROPY && l.multiple != vec3(0.0) ? missing_towards(l.widths, wi) : lost;
         value += min(passed / l.passed, 1.0) * (mirror.value * reflects + l.multiple * absent);
         pdf += l.shares.y * reflected_share(reflects, transmits) * mirror.pdf;
     }

@@ -269,7 +269,9 @@ fn twins() -> Vec<(&'static str, f64)> {
     use luminaire::gpu::specialization::{directions_number, extinction_number, light_sampling_number};
     use luminaire::reference::{light_tree as choice, luminaire as light, normal_map, path, physical, scatter};
     use luminaire::sampling::{CDF_NUMBERS, SENSOR_BLOCK};
-    use luminaire::scene::{Directions, Extinction, Filter, LEAST_ALPHA, LightSampling, albedo_table, light_tree};
+    use luminaire::scene::{
+        Directions, Extinction, Filter, LEAST_ALPHA, LightSampling, albedo_table, brushed_table, light_tree,
+    };
     use std::f64::consts::{FRAC_PI_4, PI};
 
     assert_eq!(Filter::Box.inverse_cdf(0.5).len().div_ceil(4), layout::FILTER_TEXELS);
@@ -295,6 +297,18 @@ fn twins() -> Vec<(&'static str, f64)> {
         ("STEEP", albedo_table::STEEP as f64),
         ("ROUGHNESSES", albedo_table::ROUGHNESSES as f64),
         ("COSINES", albedo_table::COSINES as f64),
+        ("ALONG", brushed_table::ALONG as f64),
+        ("RATIOS", brushed_table::RATIOS as f64),
+        ("AROUND", brushed_table::AROUND as f64),
+        ("TILTS", brushed_table::TILTS as f64),
+        ("MEANS_ALONG", brushed_table::MEANS_ALONG as f64),
+        ("MEANS_RATIOS", brushed_table::MEANS_RATIOS as f64),
+        ("BRUSHED_ALONG", brushed_table::BRUSHED_ALONG as f64),
+        ("BRUSHED_RATIOS", brushed_table::BRUSHED_RATIOS as f64),
+        ("BRUSHED_ASIDE", brushed_table::BRUSHED_ASIDE as f64),
+        ("BRUSHED_TILTS", brushed_table::BRUSHED_TILTS as f64),
+        ("BRUSHED_ROW", brushed_table::BRUSHED_ROW as f64),
+        ("LEAST_INSIDE", brushed_table::LEAST_INSIDE),
         ("LEAST_ALPHA", LEAST_ALPHA),
         ("COAT_INDEX", luminaire::scene::COAT_INDEX),
         ("EDGE_COVARIANCE", physical::EDGE_COVARIANCE),
@@ -302,7 +316,6 @@ fn twins() -> Vec<(&'static str, f64)> {
         ("LEAST_COSINE", physical::LEAST_COSINE),
         ("NARROW", physical::NARROW),
         ("WIDE", physical::WIDE),
-        ("LEAST_ROUND", luminaire::reference::microfacet::LEAST_ROUND),
         ("INSIDE", luminaire::gpu::probe::INSIDE.into()),
         ("MATERIAL_TEXELS", texels(size_of::<layout::Material>())),
         ("LUMINAIRE_TEXELS", texels(size_of::<layout::Luminaire>())),

@@ -6,9 +6,6 @@ use super::fresnel::reflect;
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// What is left at least of [`Ggx::round`].
-pub const LEAST_ROUND: f64 = 0.01;
-
 /// Widths of the distribution along x and y.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ggx {
@@ -64,15 +61,6 @@ impl Ggx {
     /// The width of a distribution that is the same all around with the same mean square.
     pub fn mean_width(&self) -> f64 {
         if self.x == self.y { self.x } else { (0.5 * (self.x * self.x + self.y * self.y)).sqrt() }
-    }
-
-    /// The width of a distribution that is the same all around, of which about as much is missing towards `wo`: the mean one, less where the view grazes
-    /// along the rougher axis, x. Of what is missing this is off by up to a twentieth of all light, mostly to less.
-    pub fn round(&self, wo: DVec3) -> f64 {
-        if self.x == self.y {
-            return self.x;
-        }
-        self.mean_width() * (1.0 - wo.x * wo.x).max(0.0).sqrt().sqrt().max(LEAST_ROUND)
     }
 
     /// Microfacets that reflect `wi` into `wo`, both above; masking and shadowing are correlated by height.

@@ -12,7 +12,8 @@
 use super::fresnel::{fresnel, fresnel_conductor, reflect, refract};
 use super::microfacet::{Ggx, Microfacet};
 use super::warp::{cosine_hemisphere, frame};
-use crate::scene::albedo_table::TABLE;
+use crate::scene::albedo_table::{DielectricAlbedo, TABLE};
+use crate::scene::brushed_table::BRUSHED;
 use crate::scene::{COAT_INDEX, LEAST_ALPHA, Material, conductor_average};
 use glam::{DMat3, DVec3};
 use std::f64::consts::PI;
@@ -219,12 +220,11 @@ impl Dielectric {
         if self.alpha == 0.0 { 0.0 } else { TABLE.missing(cosine, self.alpha) }
     }
 
-    /// The share that the surface reflects in all, seen at a cosine, where this much is missing; from inside only about.
-    fn albedo(&self, cosine: f64, missing: f64) -> DVec3 {
+    /// The share that the surface reflects in all, seen at a cosine, where this becomes of light and this much is missing; from inside only about.
+    fn albedo(&self, cosine: f64, share: &DielectricAlbedo, missing: f64) -> DVec3 {
         if self.alpha == 0.0 {
             return self.reflectance(cosine);
         }
-        let share = TABLE.dielectric(cosine, self.alpha, self.index);
         if self.inside {
             return DVec3::splat(1.0 - share.transmitted_inside / share.inside);
         }
@@ -283,6 +283,16 @@ impl Coat {
     }
 }
 
+/// Share of the light that microfacets which reflect all do not send away at once towards a direction above them.
+fn missing_towards(ggx: &Ggx, w: DVec3) -> f64 {
+    if ggx.x == ggx.y { TABLE.missing(w.z.min(1.0), ggx.x) } else { BRUSHED.missing([ggx.x, ggx.y], w) }
+}
+
+/// The mean of that over directions in proportion to their cosine.
+fn missing_average_of(ggx: &Ggx) -> f64 {
+    if ggx.x == ggx.y { TABLE.missing_average(ggx.x) } else { BRUSHED.missing_average([ggx.x, ggx.y]) }
+}
+
 /// What a surface does with light towards one direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lobes {
@@ -334,8 +344,8 @@ impl Lobes {
         let ggx = Ggx { x: along, y: across.max(LEAST_ALPHA) };
         let smooth = p.is_smooth();
         let alpha = if smooth { 0.0 } else { ggx.mean_width() };
-        let missing = if smooth { 0.0 } else { TABLE.missing(cosine, ggx.round(wo)) };
-        let missing_average = if smooth { 0.0 } else { TABLE.missing_average(alpha) };
+        let missing = if smooth { 0.0 } else { missing_towards(&ggx, wo) };
+        let missing_average = if smooth { 0.0 } else { missing_average_of(&ggx) };
 
         let inside = p.body && !front;
         let index = p.index();
@@ -349,8 +359,12 @@ impl Lobes {
         let dielectric_alpha = if flat { 0.0 } else { alpha };
         let dielectric =
             Dielectric { eta, index, inside, f0, f90, normal: normal_reflectance, alpha: dielectric_alpha, multiple };
-        let reflects = dielectric.albedo(cosine, missing);
-        let share = TABLE.dielectric(cosine, alpha, index);
+        let brushed = !smooth && ggx.x != ggx.y && p.metallic < 1.0;
+        let share = match brushed {
+            true => BRUSHED.dielectric([ggx.x, ggx.y], wo, index),
+            false => TABLE.dielectric(cosine, alpha, index),
+        };
+        let reflects = dielectric.albedo(cosine, &share, missing);
 
         let coated = p.clearcoat > 0.0 && (front || !p.body);
         let coat_normal = if p.coat_normal == DVec3::ZERO { DVec3::Z } else { to_world.transpose() * p.coat_normal };
@@ -493,13 +507,14 @@ impl Lobes {
         let entered = self.coat.passed(wi);
         let mut value = self.diffuse;
         if !self.dielectric.inside {
-            value *= entered * (DVec3::ONE - self.dielectric.albedo(cosine, missing));
+            let share = TABLE.dielectric(cosine, self.dielectric.alpha, self.dielectric.index);
+            value *= entered * (DVec3::ONE - self.dielectric.albedo(cosine, &share, missing));
         }
         let mut pdf = cosine_share * wi.z / PI;
         if !self.surface.is_smooth() {
             let facet = self.ggx.reflection(self.wo, wi);
             let [reflects, _] = self.facet(facet.cosine);
-            let absent = TABLE.missing(cosine, self.ggx.round(wi));
+            let absent = missing_towards(&self.ggx, wi);
             value += (entered / self.passed).min(1.0) * (facet.value * reflects + self.multiple * absent);
             pdf += facet_share * self.reflected_share(facet.cosine) * facet.pdf;
         }

@@ -5,6 +5,7 @@
 //! the same scene to the last bit.
 
 pub mod albedo_table;
+pub mod brushed_table;
 pub mod build;
 mod coat;
 mod darkness;

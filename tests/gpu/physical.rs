@@ -27,6 +27,7 @@ fn surfaces() -> Vec<(Physical, bool)> {
         all.push((plastic.clone(), false));
         all.push((copper(roughness), false));
         all.push((Physical { metallic: 1.0, anisotropy: 0.6, ..plastic.clone() }, false));
+        all.push((Physical { anisotropy: 0.8, metallic: 0.2, transmission: 0.4, ..plastic.clone() }, false));
         for ior in [1.05, 1.5, 2.4] {
             all.push((Physical { transmission: 1.0, ior, ..plastic.clone() }, false));
         }
@@ -198,6 +199,63 @@ fn white_balls_under_a_white_sky_are_white() {
         check("reference", &pixels(&mut Reference::new(&scene), &scene, samples));
         on_every_backend(|backend| check(backend.name(), &pixels(&mut backend.tracer(&scene), &scene, 8 * samples)));
     }
+}
+
+/// A white metal that is brushed sends out all of what falls on it, at every roughness, strength, angle and azimuth: mean weights of the kernel's directions, within 0.5 %.
+#[test]
+fn white_brushed_metal_is_white_at_every_angle() {
+    const N: u32 = 6000;
+    let mut scene = empty(4, 4);
+    add(&mut scene, cube(), matte(Vec3::splat(0.5)), Affine3A::IDENTITY);
+    let first = scene.materials.len() as u32;
+    let mut materials = vec![];
+    for roughness in [0.05, 0.2, 0.4, 0.7, 0.95] {
+        for anisotropy in [0.0, 0.1, 0.4, 0.7, 1.0] {
+            materials.push(Physical { metallic: 1.0, roughness, anisotropy, ..Physical::default() });
+        }
+    }
+    let material = |p: &Physical| Material { physical: Some(p.clone()), ..Material::default() };
+    scene.materials.extend(materials.iter().map(material));
+    let mut cases = vec![];
+    for (number, p) in (first..).zip(&materials) {
+        for degrees in [0.0, 40.0, 75.0, 89.5f64] {
+            for turn in [0.0, 30.0, 65.0, 90.0f64] {
+                let ((sin, cos), (y, x)) = (degrees.to_radians().sin_cos(), turn.to_radians().sin_cos());
+                let wo = DVec3::new(sin * x, sin * y, cos).as_vec3();
+                let what =
+                    format!("roughness {}, anisotropy {}, at {degrees}, {turn} degrees", p.roughness, p.anisotropy);
+                cases.push((number, wo, what));
+            }
+        }
+    }
+    // Roberts' sequence for three dimensions.
+    let bits = |i: u32| {
+        let even = [0.819_172_513_396_164_4, 0.671_043_606_703_789_2, 0.549_700_477_901_970_3f64];
+        let [u, v, lobe] = even.map(|step| ((0.5 + step * f64::from(i + 1)).fract() * 2f64.powi(32)) as u32);
+        [u, v, lobe, 0]
+    };
+    let calls: Vec<Call> = cases
+        .iter()
+        .flat_map(|(number, wo, _)| {
+            (0..N).map(move |i| {
+                let mut call = call([wo.x, wo.y, wo.z, 0.0], [0.0; 4]);
+                (call[0][3], call[1]) = (*number, bits(i));
+                call
+            })
+        })
+        .collect();
+    on_every_backend(|backend| {
+        let probe = Probe::new(&backend.device, &scene, backend.ray_query).expect("a probe");
+        let paths = probe.call(Function::Scatter, &calls).expect("the probe runs");
+        let off = cases.iter().zip(paths.chunks_exact(N as usize)).map(|((.., what), paths)| {
+            let sum: f64 =
+                paths.iter().map(|path| if floats(path[0])[3] == 0.0 { 0.0 } else { vector(path[1]).x }).sum();
+            (sum / f64::from(N) - 1.0, what)
+        });
+        let (off, what) = off.max_by(|a, b| a.0.abs().total_cmp(&b.0.abs())).expect("some");
+        println!("{}: off by at most {off:.1e}: {what}", backend.name());
+        assert!(off.abs() <= 5e-3, "{}, {what}: {off}", backend.name());
+    });
 }
 
 /// Beer's law: a body of index 1, twice as long as the distance in which the light takes on the colour, lets the square of the colour through.

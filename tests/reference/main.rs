@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod brushed;
 mod coats;
 mod directed;
 mod environment;

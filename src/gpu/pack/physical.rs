@@ -2,7 +2,9 @@
 
 use crate::gpu::layout::{self, NONE};
 use crate::scene::albedo_table::{ROUGH, STEEP, TABLE};
+use crate::scene::brushed_table::{ALONG, AROUND, BRUSHED, MEANS_ALONG, MEANS_RATIOS, RATIOS, TILTS};
 use crate::scene::{COAT_INDEX, ChannelMap, Material, Physical, Scene, conductor_average};
+use half::f16;
 use std::collections::HashMap;
 use std::f64::consts::TAU;
 
@@ -22,6 +24,7 @@ pub(in crate::gpu) fn physical(scene: &Scene) -> (Vec<[u32; 4]>, Vec<u32>) {
         }
     }
     texels.extend(TABLE.missing_average.windows(2).map(|pair| bits([pair[0], pair[1], 0.0, 0.0])));
+    let brushes = scene.materials.iter().any(|m| m.physical.as_ref().is_some_and(|p| p.anisotropy > 0.0));
     let mut rows = HashMap::new();
     let mut rows_of = |texels: &mut Vec<[u32; 4]>, ior: f32| -> u32 {
         // An infinite index goes by any table.
@@ -29,11 +32,17 @@ pub(in crate::gpu) fn physical(scene: &Scene) -> (Vec<[u32; 4]>, Vec<u32>) {
         *rows.entry(ior.to_bits()).or_insert_with(|| {
             let first = texels.len() as u32;
             texels.extend(TABLE.dielectric_rows(ior.into()).into_iter().map(bits));
+            if brushes {
+                texels.extend(BRUSHED.dielectric_row(ior.into()).into_iter().map(bits));
+            }
             first
         })
     };
     // Coats come first.
     rows_of(&mut texels, COAT_INDEX as f32);
+    if brushes {
+        brushed(&mut texels);
+    }
     for (material, place) in scene.materials.iter().zip(&mut places) {
         if let Some(physical) = &material.physical {
             let surface = surface(material, physical, rows_of(&mut texels, physical.ior));
@@ -42,6 +51,28 @@ pub(in crate::gpu) fn physical(scene: &Scene) -> (Vec<[u32; 4]>, Vec<u32>) {
         }
     }
     (texels, places)
+}
+
+/// The tables of brushed lobes, each cell with its corners: of what is missing all but those along the first axis, in half floats.
+fn brushed(texels: &mut Vec<[u32; 4]>) {
+    for i in 0..ALONG {
+        for (j, k) in (0..RATIOS - 1).flat_map(|j| (0..AROUND - 1).map(move |k| (j, k))) {
+            for l in 0..TILTS - 1 {
+                let pair = |j: usize, k: usize| {
+                    let at = ((i * RATIOS + j) * AROUND + k) * TILTS + l;
+                    let half = |number: f64| u32::from(f16::from_f64(number).to_bits());
+                    half(BRUSHED.missing[at]) | half(BRUSHED.missing[at + 1]) << 16
+                };
+                texels.push([pair(j, k), pair(j, k + 1), pair(j + 1, k), pair(j + 1, k + 1)]);
+            }
+        }
+    }
+    for i in 0..MEANS_ALONG - 1 {
+        for j in 0..MEANS_RATIOS - 1 {
+            let at = |i: usize, j: usize| (BRUSHED.missing_average[i * MEANS_RATIOS + j] as f32).to_bits();
+            texels.push([at(i, j), at(i, j + 1), at(i + 1, j), at(i + 1, j + 1)]);
+        }
+    }
 }
 
 fn surface(material: &Material, p: &Physical, rows: u32) -> layout::Physical {

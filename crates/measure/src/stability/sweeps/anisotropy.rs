@@ -56,8 +56,8 @@ fn findings(plates: &Plates) -> Findings {
              or too much:"
         ),
         how: format!(
-            "The light of lamps is {}, by the formulas of Trowbridge and Reitz and of Smith. What microfacets send to each other is known for lobes that are the same all around; \
-             for a brushed one it is that of a round one about as wide. The white metal sends out {least:.3} to {most:.3} of an even sky.",
+            "The light of lamps is {}, by the formulas of Trowbridge and Reitz and of Smith. What microfacets send to each other is a table of both widths and of the direction. \
+             The white metal sends out {least:.3} to {most:.3} of an even sky.",
             within(plates.off_lamps()),
         ),
         mends: format!(
@@ -65,6 +65,6 @@ fn findings(plates: &Plates) -> Findings {
             plates.noisiest(0),
             plates.tally.sentence(),
         ),
-        sees: "Streaks that are as long and as bright as they should be, with even noise. A brushed surface all around in white light is a little brighter or darker than it should be.".into(),
+        sees: "Streaks that are as long and as bright as they should be, with even noise.".into(),
     }
 }
