@@ -425,6 +425,3 @@ vec3 physical_direction(Lobes l, vec2 u, float choice) {
     }
     return microfacet_reflected(vec2(l.p.clearcoat_roughness * l.p.clearcoat_roughness), l.wo, u);
 }
-
-// What is not absorbed over a length inside.
-vec3 absorbed(vec3 absorption, float length) { return mix(vec3(1.0), exp(-absorption * length), greaterThan(absorption, vec3(0.0))); }

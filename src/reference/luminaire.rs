@@ -55,7 +55,7 @@ impl Reference {
         if !surfel.scatters() {
             return DVec3::ZERO;
         }
-        let Some((_, light)) = self.sample_luminaire(surfel, random) else { return DVec3::ZERO };
+        let Some((chosen, light)) = self.sample_luminaire(surfel, random) else { return DVec3::ZERO };
         let cosine = surfel.cosine(light.wi);
         let estimator = self.scene.integrator.estimator();
         let weight = match (light.pdf, estimator.light_sampling) {
@@ -64,10 +64,7 @@ impl Reference {
             }
             _ => 1.0,
         };
-        let mut radiance = weight * surfel.bsdf(wo, light.wi) * cosine * light.irradiance;
-        if let Some(passed) = surfel.inner_absorption(light.wi) {
-            radiance *= passed.passed(light.direction.length() * light.t_max);
-        }
+        let radiance = weight * surfel.bsdf(wo, light.wi) * cosine * light.irradiance;
         if radiance == DVec3::ZERO {
             return DVec3::ZERO;
         }
@@ -75,7 +72,15 @@ impl Reference {
         if self.occluded(light.origin, light.direction, light.t_max, salt) {
             return DVec3::ZERO;
         }
-        radiance
+        // The inner side of a body that glows.
+        let to = match &self.luminaires.entries[chosen] {
+            SampledLuminaire::Area(triangle) if triangle.normal.dot(light.wi) > 0.0 => {
+                self.body_absorption(triangle.material)
+            }
+            _ => DVec3::ZERO,
+        };
+        let ray = (light.origin, light.direction);
+        radiance * self.passed_bodies(ray, light.t_max, salt, surfel.inner_absorption(light.wi), to)
     }
 
     /// The direction in which light sampling looks from a surfel with these numbers, and the density that the power heuristic is given for

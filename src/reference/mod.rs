@@ -18,6 +18,7 @@
 //! | (how bright a picture is to be shown) | `AutoExposure` |
 //! | Path Trace Function, A Simple Raytracer, Albedo Termination | [`path`]: `radiance` |
 
+pub mod absorption;
 pub mod albedo;
 mod aov;
 mod auto_exposure;

@@ -3,21 +3,21 @@
 use super::normal_map::Tangent;
 use super::physical::PhysicalSurface;
 use super::prepared_scene::Reference;
-use crate::scene::{ChannelMap, Material};
+use crate::scene::ChannelMap;
 use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
 
 impl Reference {
-    /// What the material's metallic-roughness surface is at a point, if it has one. `outward` is the unit normal.
+    /// What the metallic-roughness surface of a material is at a point, if it has one. `outward` is the unit normal.
     pub(super) fn physical_surface(
         &self,
-        material: &Material,
+        material: usize,
         uv: DVec2,
         colour: DVec3,
         tangent: Option<Tangent>,
         outward: DVec3,
     ) -> Option<PhysicalSurface> {
-        let p = material.physical.as_ref()?;
+        let p = self.scene.materials[material].physical.as_ref()?;
         let maps = &p.maps;
         let number = |map: Option<ChannelMap>| {
             map.map_or(1.0, |map| self.map(Some(map.texture), uv).to_array()[usize::from(map.channel)])
@@ -31,7 +31,7 @@ impl Reference {
         }
         let (sin, cos) = turn.rem_euclid(TAU).sin_cos();
         let along = |tangent: Tangent| cos * tangent.direction + sin * tangent.bitangent(outward);
-        let own = PhysicalSurface::without_maps(material)?;
+        let own = self.surfaces[material]?;
         Some(PhysicalSurface {
             base: own.base * tint(maps.base_color) * colour,
             metallic: own.metallic * number(maps.metallic),

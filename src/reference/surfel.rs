@@ -85,14 +85,19 @@ impl Reference {
                 }
             }
         }
-        let material = self.scene.material_of(object, triangle);
+        let index = self.material_index(hit.object, hit.triangle) as usize;
+        let material = &self.scene.materials[index];
         let (mut horizon, mut lift) = (None, DVec3::ZERO);
         // What lets light through has no side from which alone it is lit.
         let smooth_terminator = self.scene.integrator.estimator().smooth_terminator && !material.transmits();
         if smooth_terminator && shading_normal != geometric_normal {
             let normals = triangle.vertices.map(|v| mesh.normals[v as usize].as_dvec3());
             let normals = normals.map(|n| facing((normal_to_world * n).normalize_or_zero(), shading_normal));
-            (horizon, lift) = (Some(shading_normal), terminator_lift(position, corners, normals, weights));
+            let up = terminator_lift(position, corners, normals, weights);
+            // From no higher than rounding, as where the normals lean inwards, rays below the triangle's plane would start behind it.
+            if up.dot(geometric_normal) > 2.0 * position_error(corners).dot(geometric_normal.abs()) {
+                (horizon, lift) = (Some(shading_normal), up);
+            }
         }
         let uv = texture_coordinates(mesh, triangle, weights);
         let map = |map: Option<u32>| self.map(map, uv).truncate();
@@ -133,9 +138,9 @@ impl Reference {
             transmission: if material.eta.is_some() { material.transmission.as_dvec3() } else { DVec3::ZERO },
             eta: material.eta.map(f64::from),
             thin: material.is_sheet(),
-            coat_transmittance: self.coats[object.material.unwrap_or(triangle.material) as usize],
+            coat_transmittance: self.coats[index],
             impulse_probability: material.impulse_probability.map(f64::from),
-            physical: self.physical_surface(material, uv, colour, tangent, outward_normal),
+            physical: self.physical_surface(index, uv, colour, tangent, outward_normal),
         }
     }
 }
@@ -172,10 +177,10 @@ impl Surfel {
         if both { 2.0 * self.shading_normal } else { self.shading_normal }
     }
 
-    /// The surface of the body that a ray which leaves in this direction goes through, if it absorbs.
-    pub fn inner_absorption(&self, direction: DVec3) -> Option<PhysicalSurface> {
+    /// What the body absorbs, in a unit of length, into which a ray leaves in this direction.
+    pub fn inner_absorption(&self, direction: DVec3) -> DVec3 {
         let inwards = (self.geometric_normal.dot(direction) < 0.0) == self.front;
-        self.physical.filter(|surface| surface.body && surface.absorption != DVec3::ZERO && inwards)
+        self.physical.filter(|_| inwards).map_or(DVec3::ZERO, |surface| surface.inner_absorption())
     }
 
     /// By how much more a unit of what comes from `wi` is diluted than shares of energy are: `eta^2` of what is refracted.
