@@ -24,11 +24,8 @@ impl Reference {
     /// What is left of light along a ray up to `t_max`, where nothing stops it before. `from` is absorbed behind the surface that the ray leaves, `to` in front of the
     /// one that it comes to; one of the two may say nothing.
     pub(super) fn passed_bodies(&self, ray: (DVec3, DVec3), t_max: f64, salt: u32, from: DVec3, to: DVec3) -> DVec3 {
-        let (left, from, t) = if self.pierced_bodies {
-            self.through_holes(ray, t_max, salt, from)
-        } else {
-            (DVec3::ONE, from, 0.0)
-        };
+        let (left, from, t) =
+            if self.pierced_bodies { self.through_holes(ray, t_max, salt, from) } else { (DVec3::ONE, from, 0.0) };
         left * absorbed(if to == DVec3::ZERO { from } else { to }, ray.1.length() * (t_max - t))
     }
 

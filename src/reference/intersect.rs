@@ -56,13 +56,7 @@ impl Reference {
     }
 
     /// Calls `found` for hits in `(0, t_max)`, also of what the ray may pass. It returns the `t` beyond which it does not care for more, if it knows one; some more may come.
-    fn for_each_hit(
-        &self,
-        origin: DVec3,
-        direction: DVec3,
-        t_max: f64,
-        found: &mut impl FnMut(Hit) -> Option<f64>,
-    ) {
+    fn for_each_hit(&self, origin: DVec3, direction: DVec3, t_max: f64, found: &mut impl FnMut(Hit) -> Option<f64>) {
         if !origin.is_finite() || !direction.is_finite() || direction == DVec3::ZERO {
             return;
         }

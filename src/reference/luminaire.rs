@@ -1,5 +1,6 @@
 //! Direct light: next-event estimation (slides "Lighting Functions", "Shadows & Attenuation", "Area Luminaires").
 
+use super::bsdf::bsdf_and_pdf;
 use super::hit::{interpolate, texture_coordinates};
 use super::prepared_scene::Reference;
 use super::profile::photometric_intensity;
@@ -58,13 +59,15 @@ impl Reference {
         let Some((chosen, light)) = self.sample_luminaire(surfel, random) else { return DVec3::ZERO };
         let cosine = surfel.cosine(light.wi);
         let estimator = self.scene.integrator.estimator();
-        let weight = match (light.pdf, estimator.light_sampling) {
+        let (weight, value) = match (light.pdf, estimator.light_sampling) {
             (Some(pdf), LightSampling::Mis) => {
-                power_heuristic(pdf, path_pdf(surfel, wo, light.wi, throughput, &estimator))
+                let (value, own) = bsdf_and_pdf(surfel, wo, light.wi, estimator.directions);
+                let scattered = throughput * value * cosine * surfel.dilution(light.wi);
+                (power_heuristic(pdf, path_pdf(own, scattered, surfel, &estimator)), value)
             }
-            _ => 1.0,
+            _ => (1.0, surfel.bsdf(wo, light.wi)),
         };
-        let radiance = weight * surfel.bsdf(wo, light.wi) * cosine * light.irradiance;
+        let radiance = weight * value * cosine * light.irradiance;
         if radiance == DVec3::ZERO {
             return DVec3::ZERO;
         }

@@ -81,7 +81,8 @@ impl Reference {
         let mut rays = Rays::default();
         for bounce in 0.. {
             rays.all += 1;
-            let leaving = |from: &Option<Surfel>| from.map_or(DVec3::ZERO, |from| from.inner_absorption(direction));
+            let leaving =
+                |from: &Option<Surfel>| from.as_ref().map_or(DVec3::ZERO, |from| from.inner_absorption(direction));
             let Some(hit) = self.closest_hit(origin, direction, f64::INFINITY, salt(2 * bounce)) else {
                 // Hidden from the camera itself.
                 let ray = (origin, direction);
@@ -99,7 +100,8 @@ impl Reference {
             let (ray, coming) = ((origin, direction), surfel.inner_absorption(wo));
             throughput *= self.passed_bodies(ray, hit.t, salt(2 * bounce), leaving(&from), coming);
             if surfel.emission != DVec3::ZERO {
-                let light_pdf = from.filter(|_| pdf.is_some()).map_or(0.0, |from| self.luminaire_pdf(&from, &surfel));
+                let light_pdf =
+                    from.as_ref().filter(|_| pdf.is_some()).map_or(0.0, |from| self.luminaire_pdf(from, &surfel));
                 let weight = emission_weight(estimator.light_sampling, pdf, light_pdf);
                 radiance += throughput * weight * surfel.emission;
             }

@@ -356,6 +356,11 @@ impl Lobes {
         }
     }
 
+    /// The surface that they are of.
+    pub fn surface(&self) -> &PhysicalSurface {
+        &self.surface
+    }
+
     /// Albedos of the reflection and the transmission by impulses.
     pub fn impulses(&self) -> [DVec3; 2] {
         [self.impulse_reflection, self.impulse_transmission]

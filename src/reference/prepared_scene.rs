@@ -59,7 +59,16 @@ impl Reference {
         let surfaces = scene.materials.iter().map(PhysicalSurface::without_maps).collect();
         let pierced_bodies = scene.materials.iter().any(|material| material.absorbs() && material.has_holes());
         let (luminaires, filter) = (LuminaireTable::new(&scene), filter_table(&scene.film));
-        Reference { scene: scene.into_owned(), instances, trees: None, luminaires, coats, surfaces, pierced_bodies, filter }
+        Reference {
+            scene: scene.into_owned(),
+            instances,
+            trees: None,
+            luminaires,
+            coats,
+            surfaces,
+            pierced_bodies,
+            filter,
+        }
     }
 
     /// Takes another integrator. Which luminaires are sampled, and how often, may depend on it: returns the table that there was, if another one was made.

@@ -53,8 +53,8 @@ pub struct Surfel {
     pub coat_transmittance: f64,
     /// Probability of going on by an impulse, if the material states one.
     pub impulse_probability: Option<f64>,
-    /// The metallic-roughness surface that scatters in place of all these albedos, if it is one.
-    pub physical: Option<PhysicalSurface>,
+    /// The lobes towards `wo` of the metallic-roughness surface that scatters in place of all these albedos, if it is one.
+    pub lobes: Option<Lobes>,
 }
 
 impl Reference {
@@ -114,6 +114,7 @@ impl Reference {
             tangent = tangent.and_then(|tangent| tangent.beside(outward_normal));
         }
         let colour = vertex_colour(mesh, triangle, weights);
+        let physical = self.physical_surface(index, uv, colour, tangent, outward_normal);
         Surfel {
             owner: [hit.object, hit.triangle],
             position: position + lift,
@@ -140,7 +141,7 @@ impl Reference {
             thin: material.is_sheet(),
             coat_transmittance: self.coats[index],
             impulse_probability: material.impulse_probability.map(f64::from),
-            physical: self.physical_surface(index, uv, colour, tangent, outward_normal),
+            lobes: physical.map(|surface| Lobes::new(&surface, shading_normal, front, wo)),
         }
     }
 }
@@ -156,9 +157,9 @@ impl Surfel {
         self.horizon.unwrap_or(self.geometric_normal)
     }
 
-    /// What a metallic-roughness surface does with light towards `wo`; none if it is none.
-    pub fn lobes(&self, wo: DVec3) -> Option<Lobes> {
-        self.physical.map(|surface| Lobes::new(&surface, self.shading_normal, self.front, wo))
+    /// The metallic-roughness surface, if it is one.
+    pub fn physical(&self) -> Option<&PhysicalSurface> {
+        self.lobes.as_ref().map(Lobes::surface)
     }
 
     /// Whether a direction is on one side of both the triangle and the shading normal's plane.
@@ -173,19 +174,19 @@ impl Surfel {
 
     /// What a choice of luminaires has to know of the receiver: the shading normal, of length 2 if light from both of its sides is scattered.
     pub fn receiver(&self) -> DVec3 {
-        let both = self.physical.is_some_and(|surface| surface.scatters_through());
+        let both = self.physical().is_some_and(PhysicalSurface::scatters_through);
         if both { 2.0 * self.shading_normal } else { self.shading_normal }
     }
 
     /// What the body absorbs, in a unit of length, into which a ray leaves in this direction.
     pub fn inner_absorption(&self, direction: DVec3) -> DVec3 {
         let inwards = (self.geometric_normal.dot(direction) < 0.0) == self.front;
-        self.physical.filter(|_| inwards).map_or(DVec3::ZERO, |surface| surface.inner_absorption())
+        self.physical().filter(|_| inwards).map_or(DVec3::ZERO, PhysicalSurface::inner_absorption)
     }
 
     /// By how much more a unit of what comes from `wi` is diluted than shares of energy are: `eta^2` of what is refracted.
-    pub fn dilution(&self, wo: DVec3, wi: DVec3) -> f64 {
-        if self.is_above(wi) { 1.0 } else { self.lobes(wo).map_or(1.0, |lobes| lobes.bend().powi(2)) }
+    pub fn dilution(&self, wi: DVec3) -> f64 {
+        if self.is_above(wi) { 1.0 } else { self.lobes.as_ref().map_or(1.0, |lobes| lobes.bend().powi(2)) }
     }
 
     /// Whether what scatters lies under a smooth dielectric ([`crate::scene::Material::is_coated`]).

@@ -34,6 +34,7 @@ fn evenly(i: u32) -> [f64; 3] {
 
 /// All that is scattered towards `wo`, impulses included: the mean weight.
 fn albedo_of(surfel: &Surfel, wo: DVec3, n: u32) -> DVec3 {
+    let surfel = &seen_from(surfel, wo);
     let sum: DVec3 = (0..n)
         .map(|i| {
             let scattered = scatter(surfel, wo, Directions::Bsdf, evenly(i));
@@ -83,11 +84,11 @@ fn lobes_have_their_density() {
             // Across what is brushed, too.
             let turned = |w: DVec3| DVec3::new(0.8 * w.x, 0.6 * w.x, w.z);
             let wo = turned(tilted(*degrees));
-            let lobes = surfel.lobes(wo).expect("it has lobes");
+            let lobes = seen_from(surfel, wo).lobes.expect("it has lobes");
             // Narrow about what a smooth surface reflects and transmits.
             let through = lobes.impulse_directions(DVec3::Z, wo)[1];
             let above = Cells { axis: turned(tilted(-degrees)), power: 3 };
-            let p = surfel.physical.expect("a surface");
+            let p = surfel.physical().expect("a surface");
             let straight = through == DVec3::ZERO || (p.roughness > 0.5 && p.ior < 1.2);
             let below = Cells { axis: if straight { -wo } else { through }, power: 4 };
             let density = |side: f64| {
@@ -126,6 +127,7 @@ fn scatter_gives_value_over_density() {
         all.push(("smooth".into(), physical_surfel(&smooth, false, front)));
     }
     for (name, surfel) in all {
+        let surfel = seen_from(&surfel, tilted(35.0));
         for directions in [Directions::Bsdf, Directions::Cosine, Directions::Uniform] {
             let wo = tilted(35.0);
             for i in 0..200 {
@@ -150,7 +152,7 @@ fn scatter_gives_value_over_density() {
             });
             Estimate::new(weights)
         };
-        if surfel.physical.is_some_and(|p| p.roughness > 0.5) {
+        if surfel.physical().is_some_and(|p| p.roughness > 0.5) {
             let (a, b) = (mean(Directions::Bsdf), mean(Directions::Uniform));
             let z = (a.mean - b.mean) / a.error.hypot(b.error);
             assert!(two_sided(z) > SIGNIFICANCE / 40.0, "{name}: {a:?} {b:?}");
@@ -279,13 +281,13 @@ fn reciprocity_fails_by_no_more_than_is_said() {
         (wo, uniform_hemisphere(DVec3::Z, c, d))
     };
     for (name, surfel) in kinds() {
-        let p = surfel.physical.expect("one");
+        let p = surfel.physical().expect("one");
         if p.transmission > 0.0 || p.clearcoat > 0.0 {
             continue;
         }
         for i in 0..500 {
             let (wo, wi) = pair(i);
-            let (there, back) = (surfel.bsdf(wo, wi), surfel.bsdf(wi, wo));
+            let (there, back) = (seen_from(&surfel, wo).bsdf(wo, wi), seen_from(&surfel, wi).bsdf(wi, wo));
             let width = p.roughness * p.roughness;
             let ggx = Ggx { x: width + (1.0 - width) * p.anisotropy * p.anisotropy, y: width };
             let missing = |w: DVec3| TABLE.missing(w.z, ggx.round(w));
@@ -305,7 +307,7 @@ fn reciprocity_fails_by_no_more_than_is_said() {
     let surfel = physical_surfel(&coated, false, true);
     for i in 0..500 {
         let (wo, wi) = pair(i);
-        let (there, back) = (surfel.bsdf(wo, wi).x, surfel.bsdf(wi, wo).x);
+        let (there, back) = (seen_from(&surfel, wo).bsdf(wo, wi).x, seen_from(&surfel, wi).bsdf(wi, wo).x);
         let bound = (1.0 - fresnel(1.5, wo.z)) / (1.0 - fresnel(1.5, wi.z));
         assert!((there / back / bound - 1.0).abs() < 1e-9, "{there} {back} {bound}");
     }
@@ -436,7 +438,8 @@ fn smooth_surfaces_are_impulses() {
         };
         let new = physical_surfel(&Physical { base_color: Vec3::new(0.5, 0.7, 0.9), ..glass(0.0, 1.5) }, false, front);
         for degrees in [0.0, 30.0, 41.0, 60.0, 88.0] {
-            let (a, b) = (old.impulses(tilted(degrees)), new.impulses(tilted(degrees)));
+            let wo = tilted(degrees);
+            let (a, b) = (old.impulses(wo), seen_from(&new, wo).impulses(wo));
             assert!((a.reflection - b.reflection).length() < 1e-6, "{degrees}: {a:?} {b:?}");
             assert!((a.transmission - b.transmission).length() < 1e-6, "{degrees}: {a:?} {b:?}");
             assert!(a.reflected == b.reflected && a.transmitted == b.transmitted && a.eta == b.eta);
