@@ -31,11 +31,10 @@ bool is_front(Hit hit, vec3 direction) {
     return dot(outward, direction) <= 0.0;
 }
 
-// What is left of light along a ray behind the last hole that it passes before `t_max`, where nothing stops it. Holes in bodies are crossings of their boundaries:
+// What is left of light along a ray behind the last hole that it passes before `t_max`, where nothing stops it; `size` is the length of its direction. Holes in bodies are crossings of their boundaries:
 // `from` is absorbed where the ray begins, and becomes what is absorbed behind the last of them, `t` where that is.
-vec3 through_holes(vec3 origin, vec3 direction, float t_max, uint salt, inout vec3 from, out float t) {
+vec3 through_holes(vec3 origin, vec3 direction, float size, float t_max, uint salt, inout vec3 from, out float t) {
     vec3 left = vec3(1.0);
-    float size = length(direction);
     t = 0.0;
     float t_min = 0.0;
     Hit hit;

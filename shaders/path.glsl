@@ -45,7 +45,7 @@ bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uve
     bool met = closest_hit(path.origin, path.direction, INFINITY, salt, hit);
     float last_hole = 0.0;
     if (PIERCED_BODIES) {
-        path.throughput *= through_holes(path.origin, path.direction, met ? hit.t : FAR_AWAY, salt, path.absorption, last_hole);
+        path.throughput *= through_holes(path.origin, path.direction, 1.0, met ? hit.t : FAR_AWAY, salt, path.absorption, last_hole);
     }
     if (!met) {
         if (TRANSPARENT && path.bounce == 0u) {

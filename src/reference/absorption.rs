@@ -21,18 +21,32 @@ impl Reference {
         self.surfaces[material as usize].map_or(DVec3::ZERO, |surface| surface.inner_absorption())
     }
 
-    /// What is left of light along a ray up to `t_max`, where nothing stops it before. `from` is absorbed behind the surface that the ray leaves, `to` in front of the
-    /// one that it comes to; one of the two may say nothing.
-    pub(super) fn passed_bodies(&self, ray: (DVec3, DVec3), t_max: f64, salt: u32, from: DVec3, to: DVec3) -> DVec3 {
-        let (left, from, t) =
-            if self.pierced_bodies { self.through_holes(ray, t_max, salt, from) } else { (DVec3::ONE, from, 0.0) };
-        left * absorbed(if to == DVec3::ZERO { from } else { to }, ray.1.length() * (t_max - t))
+    /// What is left of light along a ray up to `t_max`, where nothing stops it before; `size` is the length of its direction. `from` is absorbed behind the surface that it
+    /// leaves, `to` in front of the one that it comes to; one of the two may say nothing.
+    pub(super) fn passed_bodies(
+        &self,
+        ray: (DVec3, DVec3),
+        size: f64,
+        t_max: f64,
+        salt: u32,
+        [from, to]: [DVec3; 2],
+    ) -> DVec3 {
+        let (left, from, t) = match self.pierced_bodies {
+            true => self.through_holes(ray, size, t_max, salt, from),
+            false => (DVec3::ONE, from, 0.0),
+        };
+        left * absorbed(if to == DVec3::ZERO { from } else { to }, size * (t_max - t))
     }
 
     /// The same behind the last hole that the ray passes; what is absorbed from there on, if the surface that it comes to says nothing; and where that is.
-    fn through_holes(&self, ray: (DVec3, DVec3), t_max: f64, salt: u32, mut from: DVec3) -> (DVec3, DVec3, f64) {
-        let (origin, direction) = ray;
-        let size = direction.length();
+    fn through_holes(
+        &self,
+        (origin, direction): (DVec3, DVec3),
+        size: f64,
+        t_max: f64,
+        salt: u32,
+        mut from: DVec3,
+    ) -> (DVec3, DVec3, f64) {
         let (mut left, mut t) = (DVec3::ONE, 0.0);
         for hit in self.passed(origin, direction, t_max, salt) {
             let inside = self.body_absorption(self.material_index(hit.object, hit.triangle));

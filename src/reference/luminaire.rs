@@ -83,7 +83,14 @@ impl Reference {
             _ => DVec3::ZERO,
         };
         let ray = (light.origin, light.direction);
-        radiance * self.passed_bodies(ray, light.t_max, salt, surfel.inner_absorption(light.wi), to)
+        radiance
+            * self.passed_bodies(
+                ray,
+                light.direction.length(),
+                light.t_max,
+                salt,
+                [surfel.inner_absorption(light.wi), to],
+            )
     }
 
     /// The direction in which light sampling looks from a surfel with these numbers, and the density that the power heuristic is given for

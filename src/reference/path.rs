@@ -86,7 +86,8 @@ impl Reference {
             let Some(hit) = self.closest_hit(origin, direction, f64::INFINITY, salt(2 * bounce)) else {
                 // Hidden from the camera itself.
                 let ray = (origin, direction);
-                throughput *= self.passed_bodies(ray, f64::INFINITY, salt(2 * bounce), leaving(&from), DVec3::ZERO);
+                throughput *=
+                    self.passed_bodies(ray, 1.0, f64::INFINITY, salt(2 * bounce), [leaving(&from), DVec3::ZERO]);
                 if bounce > 0 || !settings.transparent {
                     let weight = emission_weight(estimator.light_sampling, pdf, self.environment_pdf(direction));
                     radiance += throughput * weight * self.environment_radiance(direction);
@@ -98,7 +99,7 @@ impl Reference {
             let wo = -direction;
             let surfel = self.surfel(&hit, wo);
             let (ray, coming) = ((origin, direction), surfel.inner_absorption(wo));
-            throughput *= self.passed_bodies(ray, hit.t, salt(2 * bounce), leaving(&from), coming);
+            throughput *= self.passed_bodies(ray, 1.0, hit.t, salt(2 * bounce), [leaving(&from), coming]);
             if surfel.emission != DVec3::ZERO {
                 let light_pdf =
                     from.as_ref().filter(|_| pdf.is_some()).map_or(0.0, |from| self.luminaire_pdf(from, &surfel));
