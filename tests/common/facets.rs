@@ -1,6 +1,6 @@
 //! Cells of the microfacets that are seen, in which a lobe of any width is as wide as a hemisphere; and surfaces over a grid to count in them.
 
-use super::scenes::{physical_surfel, seen_from};
+use super::scenes::{physical_surfel, viewed_from};
 use super::statistics::chi_square_against;
 use glam::{DVec3, Vec3};
 use luminaire::reference::fresnel::{reflect, refract};
@@ -61,7 +61,7 @@ pub struct Sampled {
 
 impl Sampled {
     pub fn surfel(&self) -> Surfel {
-        seen_from(&physical_surfel(&self.physical, self.thin, self.front), self.wo)
+        viewed_from(&physical_surfel(&self.physical, self.thin, self.front), self.wo)
     }
 
     /// How light that goes through is bent.

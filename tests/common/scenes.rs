@@ -68,7 +68,7 @@ pub fn flat_surfel(lambert: DVec3, glossy: DVec3, exponent: f64) -> Surfel {
     }
 }
 
-/// A surfel at the origin whose normals are +z, of a metallic-roughness surface without maps; brushed along +x. Seen from +z: elsewhere see [`seen_from`].
+/// A surfel at the origin whose normals are +z, of a metallic-roughness surface without maps; brushed along +x. Seen from +z: elsewhere see [`viewed_from`].
 pub fn physical_surfel(p: &Physical, thin: bool, front: bool) -> Surfel {
     let material = Material { physical: Some(p.clone()), thin, ..Material::default() };
     let surface = PhysicalSurface::without_maps(&material).expect("it has one");
@@ -78,7 +78,7 @@ pub fn physical_surfel(p: &Physical, thin: bool, front: bool) -> Surfel {
 }
 
 /// The same surfel, seen from another direction.
-pub fn seen_from(surfel: &Surfel, wo: DVec3) -> Surfel {
+pub fn viewed_from(surfel: &Surfel, wo: DVec3) -> Surfel {
     let lobes = surfel.lobes.map(|lobes| lobes.about(surfel.shading_normal, surfel.front, wo));
     Surfel { lobes, ..*surfel }
 }

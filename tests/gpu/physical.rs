@@ -76,7 +76,7 @@ fn surfaces_are_those_of_the_reference() {
                 let material = (first + index as u32) | if front { 0 } else { INSIDE };
                 let view = tilted(degrees).as_vec3();
                 let wo = view.as_dvec3();
-                let surfel = seen_from(&surfel, wo);
+                let surfel = viewed_from(&surfel, wo);
                 let name = format!("{p:?}, thin {thin}, front {front}, at {degrees} degrees");
                 let calls: Vec<Call> = (0..N)
                     .map(|i| {

@@ -34,7 +34,7 @@ fn evenly(i: u32) -> [f64; 3] {
 
 /// All that is scattered towards `wo`, impulses included: the mean weight.
 fn albedo_of(surfel: &Surfel, wo: DVec3, n: u32) -> DVec3 {
-    let surfel = &seen_from(surfel, wo);
+    let surfel = &viewed_from(surfel, wo);
     let sum: DVec3 = (0..n)
         .map(|i| {
             let scattered = scatter(surfel, wo, Directions::Bsdf, evenly(i));
@@ -84,7 +84,7 @@ fn lobes_have_their_density() {
             // Across what is brushed, too.
             let turned = |w: DVec3| DVec3::new(0.8 * w.x, 0.6 * w.x, w.z);
             let wo = turned(tilted(*degrees));
-            let lobes = seen_from(surfel, wo).lobes.expect("it has lobes");
+            let lobes = viewed_from(surfel, wo).lobes.expect("it has lobes");
             // Narrow about what a smooth surface reflects and transmits.
             let through = lobes.impulse_directions(DVec3::Z, wo)[1];
             let above = Cells { axis: turned(tilted(-degrees)), power: 3 };
@@ -127,7 +127,7 @@ fn scatter_gives_value_over_density() {
         all.push(("smooth".into(), physical_surfel(&smooth, false, front)));
     }
     for (name, surfel) in all {
-        let surfel = seen_from(&surfel, tilted(35.0));
+        let surfel = viewed_from(&surfel, tilted(35.0));
         for directions in [Directions::Bsdf, Directions::Cosine, Directions::Uniform] {
             let wo = tilted(35.0);
             for i in 0..200 {
@@ -287,7 +287,7 @@ fn reciprocity_fails_by_no_more_than_is_said() {
         }
         for i in 0..500 {
             let (wo, wi) = pair(i);
-            let (there, back) = (seen_from(&surfel, wo).bsdf(wo, wi), seen_from(&surfel, wi).bsdf(wi, wo));
+            let (there, back) = (viewed_from(&surfel, wo).bsdf(wo, wi), viewed_from(&surfel, wi).bsdf(wi, wo));
             let width = p.roughness * p.roughness;
             let ggx = Ggx { x: width + (1.0 - width) * p.anisotropy * p.anisotropy, y: width };
             let missing = |w: DVec3| TABLE.missing(w.z, ggx.round(w));
@@ -307,7 +307,7 @@ fn reciprocity_fails_by_no_more_than_is_said() {
     let surfel = physical_surfel(&coated, false, true);
     for i in 0..500 {
         let (wo, wi) = pair(i);
-        let (there, back) = (seen_from(&surfel, wo).bsdf(wo, wi).x, seen_from(&surfel, wi).bsdf(wi, wo).x);
+        let (there, back) = (viewed_from(&surfel, wo).bsdf(wo, wi).x, viewed_from(&surfel, wi).bsdf(wi, wo).x);
         let bound = (1.0 - fresnel(1.5, wo.z)) / (1.0 - fresnel(1.5, wi.z));
         assert!((there / back / bound - 1.0).abs() < 1e-9, "{there} {back} {bound}");
     }
@@ -439,7 +439,7 @@ fn smooth_surfaces_are_impulses() {
         let new = physical_surfel(&Physical { base_color: Vec3::new(0.5, 0.7, 0.9), ..glass(0.0, 1.5) }, false, front);
         for degrees in [0.0, 30.0, 41.0, 60.0, 88.0] {
             let wo = tilted(degrees);
-            let (a, b) = (old.impulses(wo), seen_from(&new, wo).impulses(wo));
+            let (a, b) = (old.impulses(wo), viewed_from(&new, wo).impulses(wo));
             assert!((a.reflection - b.reflection).length() < 1e-6, "{degrees}: {a:?} {b:?}");
             assert!((a.transmission - b.transmission).length() < 1e-6, "{degrees}: {a:?} {b:?}");
             assert!(a.reflected == b.reflected && a.transmitted == b.transmitted && a.eta == b.eta);
