@@ -13,8 +13,15 @@ struct Hit {
 //
 // bool closest_hit(vec3 origin, vec3 direction, float t_max, uint salt, out Hit hit);
 // bool occluded(vec3 origin, vec3 direction, float t_max, uint salt);
+//
+// The first surface that the ray passes through a hole (`is_passed`), in (t_min, t_max), up to where nothing stops it:
+//
+// bool next_passed(vec3 origin, vec3 direction, float t_min, float t_max, uint salt, out Hit hit);
 
 #define INFINITY uintBitsToFloat(INFINITY_BITS)
+
+// Beyond all that is hit. Not an infinity, of which a compiler may assume that there is none.
+const float FAR_AWAY = 1e30;
 
 float largest(vec3 v) { return max(v.x, max(v.y, v.z)); }
 

@@ -132,7 +132,8 @@ bool intersect_triangle(TraversalRay ray, float t_max, uint triangle, out float 
     return t > 0.0 && t < t_max;
 }
 
-bool traverse(vec3 origin, vec3 direction, float t_max, uint salt, const bool any_hit, out Hit hit) {
+// With `passed`, looks for what the ray passes through holes beyond `t_min`; without, for what it meets.
+bool traverse(vec3 origin, vec3 direction, float t_min, float t_max, uint salt, const bool any_hit, const bool passed, out Hit hit) {
     uvec2 stack[STACK_SIZE];
     int depth = 0;
     TraversalRay world = traversal_ray(origin, direction);
@@ -183,7 +184,8 @@ bool traverse(vec3 origin, vec3 direction, float t_max, uint salt, const bool an
             } else {
                 float t;
                 vec3 w;
-                if (intersect_triangle(ray, hit.t, index, t, w) && (!HOLES || covers(salt, object, index, w.xy / w.z))) {
+                if (intersect_triangle(ray, hit.t, index, t, w)
+                    && (passed ? t > t_min && is_passed(salt, object, index, w.xy / w.z) : !HOLES || covers(salt, object, index, w.xy / w.z))) {
                     found = true;
                     if (any_hit) return true;
                     hit = Hit(t, object, index, w.xy);
@@ -207,10 +209,14 @@ bool traverse(vec3 origin, vec3 direction, float t_max, uint salt, const bool an
 }
 
 bool closest_hit(vec3 origin, vec3 direction, float t_max, uint salt, out Hit hit) {
-    return traverse(origin, direction, t_max, salt, false, hit);
+    return traverse(origin, direction, 0.0, t_max, salt, false, false, hit);
+}
+
+bool next_passed(vec3 origin, vec3 direction, float t_min, float t_max, uint salt, out Hit hit) {
+    return traverse(origin, direction, t_min, t_max, salt, false, true, hit);
 }
 
 bool occluded(vec3 origin, vec3 direction, float t_max, uint salt) {
     Hit hit;
-    return traverse(origin, direction, t_max, salt, true, hit);
+    return traverse(origin, direction, 0.0, t_max, salt, true, false, hit);
 }

@@ -40,6 +40,25 @@ bool closest_hit(vec3 origin, vec3 direction, float t_max, uint salt, out Hit hi
     return true;
 }
 
+bool next_passed(vec3 origin, vec3 direction, float t_min, float t_max, uint salt, out Hit hit) {
+    if (!is_ray(origin, direction)) return false;
+    rayQueryEXT query;
+    rayQueryInitializeEXT(query, top_level, gl_RayFlagsCullOpaqueEXT, 0xffu, origin, 0.0, direction, t_max);
+    while (rayQueryProceedEXT(query)) {
+        if (rayQueryGetIntersectionTypeEXT(query, false) == gl_RayQueryCandidateIntersectionTriangleEXT
+            && rayQueryGetIntersectionTEXT(query, false) > t_min
+            && is_passed(salt, OBJECT_OF(query, false), TRIANGLE_OF(query, false), rayQueryGetIntersectionBarycentricsEXT(query, false))) {
+            rayQueryConfirmIntersectionEXT(query);
+        }
+    }
+    if (rayQueryGetIntersectionTypeEXT(query, true) != gl_RayQueryCommittedIntersectionTriangleEXT) return false;
+    hit.t = rayQueryGetIntersectionTEXT(query, true);
+    hit.object = OBJECT_OF(query, true);
+    hit.triangle = TRIANGLE_OF(query, true);
+    hit.barycentric = rayQueryGetIntersectionBarycentricsEXT(query, true);
+    return true;
+}
+
 bool occluded(vec3 origin, vec3 direction, float t_max, uint salt) {
     if (!is_ray(origin, direction)) return false;
     rayQueryEXT query;

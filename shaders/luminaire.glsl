@@ -202,10 +202,17 @@ vec3 direct_light(Surfel s, Material material, vec3 wo, vec3 throughput, uvec4 r
         }
         direction = target - origin;
     }
-    if (VOLUMES) {
-        vec3 absorption = inner_absorption(s, material, wi);
-        if (absorption != vec3(0.0)) radiance *= absorbed(absorption, infinite || surroundings ? 1e30 : length(direction) * t_max);
-    }
     rays += uvec2(1u);
-    return occluded(origin, direction, t_max, salt) ? vec3(0.0) : radiance;
+    if (occluded(origin, direction, t_max, salt)) return vec3(0.0);
+    if (VOLUMES) {
+        t_max = infinite || surroundings || sun ? FAR_AWAY : t_max;
+        vec3 from = inner_absorption(s, material, wi);
+        float last_hole = 0.0;
+        if (PIERCED_BODIES) radiance *= through_holes(origin, direction, length(direction), t_max, salt, from, last_hole);
+        // The inner side of a body that glows.
+        vec3 absorption = area && dot(light.normal, wi) > 0.0 ? body_absorption(light.material) : vec3(0.0);
+        if (absorption == vec3(0.0)) absorption = from;
+        if (absorption != vec3(0.0)) radiance *= absorbed(absorption, length(direction) * (t_max - last_hole));
+    }
+    return radiance;
 }

@@ -42,7 +42,12 @@ bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uve
     Hit hit;
     rays.x++;
     uint salt = HOLES ? ray_salt(pixel_index, sample_index, 2u * path.bounce, frame.seed) : 0u;
-    if (!closest_hit(path.origin, path.direction, INFINITY, salt, hit)) {
+    bool met = closest_hit(path.origin, path.direction, INFINITY, salt, hit);
+    float last_hole = 0.0;
+    if (PIERCED_BODIES) {
+        path.throughput *= through_holes(path.origin, path.direction, 1.0, met ? hit.t : FAR_AWAY, salt, path.absorption, last_hole);
+    }
+    if (!met) {
         if (TRANSPARENT && path.bounce == 0u) {
             path.bounce = NONE;
             return false;
@@ -68,7 +73,7 @@ bool extend_path(inout Path path, uint pixel_index, uint sample_index, inout uve
         // Inside of a body, as the surface says that the ray comes to, or else the one that it left.
         vec3 absorption = inner_absorption(s, material, wo);
         if (absorption == vec3(0.0)) absorption = path.absorption;
-        if (absorption != vec3(0.0)) path.throughput *= absorbed(absorption, hit.t);
+        if (absorption != vec3(0.0)) path.throughput *= absorbed(absorption, hit.t - last_hole);
     }
 
     if (AREA_LUMINAIRES && material.emission != vec3(0.0)) {

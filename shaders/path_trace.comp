@@ -17,6 +17,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "microfacet.glsl"
 #include "physical.glsl"
 #include "surfel.glsl"
+#include "absorption.glsl"
 #include "impulse.glsl"
 #include "bsdf.glsl"
 #include "scatter.glsl"

@@ -587,6 +587,3 @@ vec3 physical_direction(Lobes l, vec2 u, float choice) {
     wi = from_frame(l.coat_normal, wi);
     return wi.z > 0.0 ? wi : vec3(0.0);
 }
-
-// What is not absorbed over a length inside.
-vec3 absorbed(vec3 absorption, float length) { return mix(vec3(1.0), exp(-absorption * length), greaterThan(absorption, vec3(0.0))); }

@@ -17,6 +17,7 @@ layout(local_size_x = 64) in;
 #include "microfacet.glsl"
 #include "physical.glsl"
 #include "surfel.glsl"
+#include "absorption.glsl"
 #include "impulse.glsl"
 #include "bsdf.glsl"
 #include "scatter.glsl"

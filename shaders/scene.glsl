@@ -29,19 +29,20 @@ layout(constant_id = 24) const bool CLEARCOATS = true;         // some of these 
 layout(constant_id = 25) const bool ANISOTROPY = true;         // some of these are brushed
 layout(constant_id = 26) const bool TANGENTS = true;           // some material needs to know where the texture's u grows
 layout(constant_id = 27) const bool NORMAL_MAPS = true;        // some material has a map that bends the shading normal
-layout(constant_id = 28) const bool ORTHOGRAPHIC = false;
-layout(constant_id = 29) const bool SOBOL = false;
+layout(constant_id = 28) const bool PIERCED_BODIES = true;     // some body that absorbs is not opaque everywhere
+layout(constant_id = 29) const bool ORTHOGRAPHIC = false;
+layout(constant_id = 30) const bool SOBOL = false;
 
 // The integrator's choices (src/scene/estimator.rs).
-layout(constant_id = 30) const bool SIMPLE = false;            // the simple ray tracer instead of the path tracer
-layout(constant_id = 31) const uint LIGHT_SAMPLING = 2u;
-layout(constant_id = 32) const bool SOLID_ANGLE = true;        // near triangles are sampled by solid angle
-layout(constant_id = 33) const uint DIRECTIONS = 2u;
-layout(constant_id = 34) const uint EXTINCTION = 3u;
-layout(constant_id = 35) const bool THRESHOLD = false;         // paths of small albedo end
+layout(constant_id = 31) const bool SIMPLE = false;            // the simple ray tracer instead of the path tracer
+layout(constant_id = 32) const uint LIGHT_SAMPLING = 2u;
+layout(constant_id = 33) const bool SOLID_ANGLE = true;        // near triangles are sampled by solid angle
+layout(constant_id = 34) const uint DIRECTIONS = 2u;
+layout(constant_id = 35) const uint EXTINCTION = 3u;
+layout(constant_id = 36) const bool THRESHOLD = false;         // paths of small albedo end
 
-layout(constant_id = 36) const bool TRANSPARENT = false;       // the camera does not see where its rays escape to, and they are counted
-layout(constant_id = 37) const bool SMOOTH_TERMINATOR = false; // rays leave from above the triangles of smooth meshes
+layout(constant_id = 37) const bool TRANSPARENT = false;       // the camera does not see where its rays escape to, and they are counted
+layout(constant_id = 38) const bool SMOOTH_TERMINATOR = false; // rays leave from above the triangles of smooth meshes
 
 const uint LIGHT_NONE = 0u;
 const uint LIGHT_DIRECT = 1u;

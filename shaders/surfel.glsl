@@ -150,9 +150,13 @@ Surfel surfel(Hit hit, vec3 wo) {
         s.lift = vec3(0.0);
         // What lets light through has no side from which alone it is lit.
         if (s.shading_normal != s.geometric_normal && !lets_light_through(load_material(s.material))) {
-            s.horizon = s.shading_normal;
-            s.lift = terminator_lift(hit, s.position, s.shading_normal);
-            s.position += s.lift;
+            vec3 lift = terminator_lift(hit, s.position, s.shading_normal);
+            // From no higher than rounding, as where the normals lean inwards, rays below the triangle's plane would start behind it.
+            if (dot(lift, s.geometric_normal) > 2.0 * dot(abs(s.geometric_normal), s.position_error)) {
+                s.horizon = s.shading_normal;
+                s.lift = lift;
+                s.position += lift;
+            }
         }
     }
     if (NORMAL_MAPS) s.unbent_normal = s.shading_normal;

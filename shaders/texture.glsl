@@ -94,12 +94,22 @@ float opacity_at(uint material, uint triangle, vec2 barycentric) {
     return opacity;
 }
 
+// Of the triangle's own, or its object's.
+uint material_of(uint object, uint triangle) {
+    uint material = INSTANCES ? object_place(object).material : NONE;
+    return material == NONE ? load_triangle(triangle).material : material;
+}
+
 // Whether a ray stops at a hit, by chance where the surface is partly transparent.
 bool covers(uint salt, uint object, uint triangle, vec2 barycentric) {
-    uint material = INSTANCES ? object_place(object).material : NONE;
-    if (material == NONE) material = load_triangle(triangle).material;
+    uint material = material_of(object, triangle);
     Material m = load_material(material);
     if (m.opacity >= 1.0 && m.opacity_map == NONE) return true;
     uint index_in_mesh = load_triangle(triangle).index_in_mesh;
     return uniform1(coverage(salt, object_place(object).scene_index, index_in_mesh)) < opacity_at(material, triangle, barycentric);
+}
+
+// Whether it passes a metallic-roughness surface there: one that may bound a body (absorption.glsl).
+bool is_passed(uint salt, uint object, uint triangle, vec2 barycentric) {
+    return load_material(material_of(object, triangle)).kind > 1u && !covers(salt, object, triangle, barycentric);
 }

@@ -254,7 +254,8 @@ fn number(text: &str) -> Option<f64> {
 }
 
 /// Constants of the shaders that the host has no twin of: what they are for is the shaders' own affair.
-const OWN: [&str; 2] = [
+const OWN: [&str; 3] = [
+    "FAR_AWAY",  // in place of an infinity
     "RAY_FLAGS", // of ray queries
     "IMPULSE",   // stands for a density that there is none of
 ];

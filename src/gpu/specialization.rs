@@ -4,7 +4,7 @@ use crate::scene::{
     AreaSampling, Directions, Environment, Extinction, Integrator, LightSampling, Luminaire, LuminaireTable, Material,
     Physical, Projection, SampledLuminaire, Sampler, Scene,
 };
-use glam::{Affine2, Affine3A, DVec3, Vec3};
+use glam::{Affine2, Affine3A, Vec3};
 
 macro_rules! features {
     ($($(#[$doc:meta])* $name:ident: $text:literal,)*) => {
@@ -92,6 +92,8 @@ features! {
     tangents: "tangents",
     /// Some material has a map that bends the shading normal.
     normal_maps: "normal maps",
+    /// Some body that absorbs is not opaque everywhere.
+    pierced_bodies: "holes in absorbing bodies",
 }
 
 /// The kernel that runs: the scene's features, and the choices of its integrator.
@@ -156,11 +158,12 @@ impl KernelModel {
             suns: any(|l| matches!(l, SampledLuminaire::Sun(_))),
             physical: material(|m| m.physical.is_some()),
             rough_transmission: material(|m| m.physical.is_some() && m.transmits()),
-            volumes: material(|m| m.is_body() && m.physical.as_ref().is_some_and(|p| p.absorption() != DVec3::ZERO)),
+            volumes: material(Material::absorbs),
             clearcoats: physical(|p| p.clearcoat > 0.0),
             anisotropy: physical(|p| p.anisotropy > 0.0),
             tangents: material(Material::needs_tangents),
             normal_maps: material(Material::bends_normal),
+            pierced_bodies: material(|m| m.absorbs() && m.has_holes()),
         };
         KernelModel {
             features,

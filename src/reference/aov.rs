@@ -1,6 +1,7 @@
 //! What the camera sees first; its twin is `shaders/aov.comp`.
 
 use super::impulse::fresnel;
+use super::physical::PhysicalSurface;
 use super::prepared_scene::Reference;
 use crate::film::AovSum;
 use crate::sampling::ray_salt;
@@ -20,10 +21,8 @@ impl Reference {
             let Some(hit) = self.closest_hit(origin, direction, f64::INFINITY, salt) else { continue };
             let surfel = self.surfel(&hit, -direction);
             let base = surfel.lambert + surfel.glossy;
-            albedo += match surfel.eta {
-                _ if surfel.physical.is_some() => {
-                    surfel.physical.map_or(DVec3::ZERO, |surface| surface.normal_albedo())
-                }
+            let physical = surfel.physical().map(PhysicalSurface::normal_albedo);
+            albedo += physical.unwrap_or_else(|| match surfel.eta {
                 // As from straight above; on a black base too, which a map may have in places.
                 Some(eta) if surfel.transmission == DVec3::ZERO => {
                     base + surfel.reflection * fresnel(eta, 1.0) * (DVec3::ONE - base)
@@ -31,7 +30,7 @@ impl Reference {
                 // Of glass either the one or the other.
                 Some(_) => base + surfel.reflection.max(surfel.transmission),
                 None => base + surfel.reflection,
-            };
+            });
             normal += surfel.shading_normal;
             depth += (surfel.position - surfel.lift - position).dot(forward);
             hits += 1;

@@ -2,6 +2,7 @@
 //! Element Class"), under a coat where there is one; how directions are chosen (slides "Inefficient Integration", "More Efficient Integration").
 
 use super::impulse::{fresnel, reflect};
+use super::physical::{Lobes, PhysicalSurface};
 use super::surfel::{Surfel, mean};
 use super::warp::{cosine_hemisphere, glossy_half_vector, uniform_hemisphere};
 use crate::scene::Directions;
@@ -14,7 +15,7 @@ impl Surfel {
     /// Zero unless `wi` is above the triangle *and* above the shading normal's plane: light would leak through walls.
     /// Of a metallic-roughness surface the value of its lobes; what is refracted comes from below both.
     pub fn bsdf(&self, wo: DVec3, wi: DVec3) -> DVec3 {
-        if let Some(lobes) = self.lobes(wo) {
+        if let Some(lobes) = &self.lobes {
             return if self.is_on_one_side(wi) { lobes.value_and_pdf(wi).0 } else { DVec3::ZERO };
         }
         if !self.is_above(wi) {
@@ -51,7 +52,7 @@ impl Surfel {
     pub fn scatters(&self) -> bool {
         self.lambert != DVec3::ZERO
             || self.glossy != DVec3::ZERO
-            || self.physical.is_some_and(|surface| surface.scatters())
+            || self.physical().is_some_and(PhysicalSurface::scatters)
     }
 }
 
@@ -64,7 +65,7 @@ pub fn glossy_normalization(m: f64) -> f64 {
 /// density.
 pub fn bsdf_direction(surfel: &Surfel, wo: DVec3, directions: Directions, [u, v]: [f64; 2], lobe: f64) -> DVec3 {
     let n = surfel.shading_normal;
-    if let Some(lobes) = surfel.lobes(wo) {
+    if let Some(lobes) = &surfel.lobes {
         // Half of them from below, if light from there is scattered.
         let side = if lobes.scatters_through() && lobe < 0.5 { -n } else { n };
         return match directions {
@@ -80,6 +81,15 @@ pub fn bsdf_direction(surfel: &Surfel, wo: DVec3, directions: Directions, [u, v]
     }
 }
 
+/// The value and the density ([`Surfel::bsdf`], [`bsdf_pdf`]), which have most of their numbers in common.
+pub fn bsdf_and_pdf(surfel: &Surfel, wo: DVec3, wi: DVec3, directions: Directions) -> (DVec3, f64) {
+    let Some(lobes) = surfel.lobes.as_ref().filter(|_| surfel.is_on_one_side(wi)) else {
+        return (surfel.bsdf(wo, wi), bsdf_pdf(surfel, wo, wi, directions));
+    };
+    let (value, pdf) = lobes.value_and_pdf(wi);
+    (value, physical_pdf(surfel, lobes, wo, wi, directions, || pdf))
+}
+
 /// The density with which [`scatter`](super::scatter::scatter) chooses `wi`, per steradian, out of all there is to choose from: impulses take their
 /// share. Zero where nothing is scattered to, though the glossy lobe chooses such directions too.
 pub fn bsdf_pdf(surfel: &Surfel, wo: DVec3, wi: DVec3, directions: Directions) -> f64 {
@@ -87,18 +97,8 @@ pub fn bsdf_pdf(surfel: &Surfel, wo: DVec3, wi: DVec3, directions: Directions) -
         return 0.0;
     }
     let n = surfel.shading_normal;
-    if let Some(lobes) = surfel.lobes(wo) {
-        let both = lobes.scatters_through();
-        if !surfel.is_on_one_side(wi) || (!both && !surfel.is_above(wi)) {
-            return 0.0;
-        }
-        let sides = if both { 0.5 } else { 1.0 };
-        let pdf = match directions {
-            Directions::Uniform => sides / TAU,
-            Directions::Cosine => sides * surfel.cosine(wi) / PI,
-            Directions::Bsdf => lobes.value_and_pdf(wi).1,
-        };
-        return (1.0 - surfel.impulse_probability(&surfel.impulses(wo))) * pdf;
+    if let Some(lobes) = &surfel.lobes {
+        return physical_pdf(surfel, lobes, wo, wi, directions, || lobes.value_and_pdf(wi).1);
     }
     if !surfel.is_above(wi) {
         return 0.0;
@@ -111,6 +111,28 @@ pub fn bsdf_pdf(surfel: &Surfel, wo: DVec3, wi: DVec3, directions: Directions) -
             let g = glossy_share(surfel);
             g * glossy_pdf(n, surfel.exponent, wo, wi) + (1.0 - g) * cosine
         }
+    };
+    (1.0 - surfel.impulse_probability(&surfel.impulses(wo))) * pdf
+}
+
+/// The same of a metallic-roughness surface, where `by_lobes` is the density by which its lobes are.
+fn physical_pdf(
+    surfel: &Surfel,
+    lobes: &Lobes,
+    wo: DVec3,
+    wi: DVec3,
+    directions: Directions,
+    by_lobes: impl Fn() -> f64,
+) -> f64 {
+    let both = lobes.scatters_through();
+    if !surfel.scatters() || !surfel.is_on_one_side(wi) || (!both && !surfel.is_above(wi)) {
+        return 0.0;
+    }
+    let sides = if both { 0.5 } else { 1.0 };
+    let pdf = match directions {
+        Directions::Uniform => sides / TAU,
+        Directions::Cosine => sides * surfel.cosine(wi) / PI,
+        Directions::Bsdf => by_lobes(),
     };
     (1.0 - surfel.impulse_probability(&surfel.impulses(wo))) * pdf
 }

@@ -34,8 +34,8 @@ impl Surfel {
     /// Total reflection about interpolated normals would be a trap: such reflections do not preserve the volume of phase space, and paths that
     /// entered a coarse ball of glass would be drawn to its rim and stay there for ever. About the triangles' own normals they leave.
     pub fn impulses(&self, wo: DVec3) -> Impulses {
-        if let Some(lobes) = self.lobes(wo) {
-            return self.physical_impulses(&lobes, wo);
+        if let Some(lobes) = &self.lobes {
+            return self.physical_impulses(lobes, wo);
         }
         let about_shading_normal = self.impulses_about(self.shading_normal, wo);
         let Impulses { reflected, transmitted, .. } = about_shading_normal;

@@ -19,27 +19,44 @@ impl Reference {
     /// `direction` need not have unit length. A ray that is not finite, or has no direction, hits nothing.
     pub fn closest_hit(&self, origin: DVec3, direction: DVec3, t_max: f64, salt: u32) -> Option<Hit> {
         let mut closest: Option<Hit> = None;
-        self.for_each_hit(origin, direction, t_max, salt, &mut |hit| {
+        self.for_each_hit(origin, direction, t_max, &mut |hit| {
+            if !self.is_met(&hit, salt) {
+                return None;
+            }
             if closest.is_none_or(|c| (hit.t, hit.object, hit.triangle) < (c.t, c.object, c.triangle)) {
                 closest = Some(hit);
             }
-            closest.map_or(t_max, |c| c.t)
+            closest.map(|c| c.t)
         });
         closest
+    }
+
+    /// What a ray passes through holes before `t_max`, in the order in which it does.
+    pub(super) fn passed(&self, origin: DVec3, direction: DVec3, t_max: f64, salt: u32) -> Vec<Hit> {
+        let mut passed = vec![];
+        self.for_each_hit(origin, direction, t_max, &mut |hit| {
+            if !self.is_met(&hit, salt) {
+                passed.push(hit);
+            }
+            None
+        });
+        passed.sort_by(|a, b| a.t.total_cmp(&b.t));
+        passed
     }
 
     /// Whether anything is hit at a `t` in `(0, t_max)`.
     pub fn occluded(&self, origin: DVec3, direction: DVec3, t_max: f64, salt: u32) -> bool {
         let mut occluded = false;
-        self.for_each_hit(origin, direction, t_max, salt, &mut |_| {
-            occluded = true;
-            f64::NEG_INFINITY
+        self.for_each_hit(origin, direction, t_max, &mut |hit| {
+            let met = self.is_met(&hit, salt);
+            occluded |= met;
+            met.then_some(f64::NEG_INFINITY)
         });
         occluded
     }
 
-    /// Calls `found` for hits in `(0, t_max)`. It returns the `t` beyond which it does not care for more; some more may come.
-    fn for_each_hit(&self, origin: DVec3, direction: DVec3, t_max: f64, salt: u32, found: &mut impl FnMut(Hit) -> f64) {
+    /// Calls `found` for hits in `(0, t_max)`, also of what the ray may pass. It returns the `t` beyond which it does not care for more, if it knows one; some more may come.
+    fn for_each_hit(&self, origin: DVec3, direction: DVec3, t_max: f64, found: &mut impl FnMut(Hit) -> Option<f64>) {
         if !origin.is_finite() || !direction.is_finite() || direction == DVec3::ZERO {
             return;
         }
@@ -50,8 +67,8 @@ impl Reference {
                 && t < t_max
             {
                 let hit = Hit { t, object, triangle, barycentrics };
-                if self.is_met(&hit, salt) {
-                    *limit = found(hit);
+                if let Some(least) = found(hit) {
+                    *limit = least;
                 }
             }
         };

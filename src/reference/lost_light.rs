@@ -333,8 +333,7 @@ impl Reference {
             };
             let surfel = self.surfel(&hit, -light.direction.normalize());
             // Rough glass scatters what it lets through: that is found from there.
-            let physical = surfel.lobes(-light.direction.normalize());
-            passed *= mean(physical.map_or(surfel.transmission, |lobes| lobes.impulses()[1]));
+            passed *= mean(surfel.lobes.map_or(surfel.transmission, |lobes| lobes.impulses()[1]));
             if passed == 0.0 {
                 return None;
             }

@@ -1,5 +1,6 @@
 //! Direct light: next-event estimation (slides "Lighting Functions", "Shadows & Attenuation", "Area Luminaires").
 
+use super::bsdf::bsdf_and_pdf;
 use super::hit::{interpolate, texture_coordinates};
 use super::prepared_scene::Reference;
 use super::profile::photometric_intensity;
@@ -55,19 +56,18 @@ impl Reference {
         if !surfel.scatters() {
             return DVec3::ZERO;
         }
-        let Some((_, light)) = self.sample_luminaire(surfel, random) else { return DVec3::ZERO };
+        let Some((chosen, light)) = self.sample_luminaire(surfel, random) else { return DVec3::ZERO };
         let cosine = surfel.cosine(light.wi);
         let estimator = self.scene.integrator.estimator();
-        let weight = match (light.pdf, estimator.light_sampling) {
+        let (weight, value) = match (light.pdf, estimator.light_sampling) {
             (Some(pdf), LightSampling::Mis) => {
-                power_heuristic(pdf, path_pdf(surfel, wo, light.wi, throughput, &estimator))
+                let (value, own) = bsdf_and_pdf(surfel, wo, light.wi, estimator.directions);
+                let scattered = throughput * value * cosine * surfel.dilution(light.wi);
+                (power_heuristic(pdf, path_pdf(own, scattered, surfel, &estimator)), value)
             }
-            _ => 1.0,
+            _ => (1.0, surfel.bsdf(wo, light.wi)),
         };
-        let mut radiance = weight * surfel.bsdf(wo, light.wi) * cosine * light.irradiance;
-        if let Some(passed) = surfel.inner_absorption(light.wi) {
-            radiance *= passed.passed(light.direction.length() * light.t_max);
-        }
+        let radiance = weight * value * cosine * light.irradiance;
         if radiance == DVec3::ZERO {
             return DVec3::ZERO;
         }
@@ -75,7 +75,22 @@ impl Reference {
         if self.occluded(light.origin, light.direction, light.t_max, salt) {
             return DVec3::ZERO;
         }
+        // The inner side of a body that glows.
+        let to = match &self.luminaires.entries[chosen] {
+            SampledLuminaire::Area(triangle) if triangle.normal.dot(light.wi) > 0.0 => {
+                self.body_absorption(triangle.material)
+            }
+            _ => DVec3::ZERO,
+        };
+        let ray = (light.origin, light.direction);
         radiance
+            * self.passed_bodies(
+                ray,
+                light.direction.length(),
+                light.t_max,
+                salt,
+                [surfel.inner_absorption(light.wi), to],
+            )
     }
 
     /// The direction in which light sampling looks from a surfel with these numbers, and the density that the power heuristic is given for

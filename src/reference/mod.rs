@@ -13,11 +13,12 @@
 //! | (normal and height maps) | [`normal_map`] |
 //! | Intersection Problems | [`intersect`], [`surfel`]: `offset_ray_origin` |
 //! | Sensor Modelling | [`sensor`]: `sensor_ray` |
-//! | (surfaces of real scenes) | [`physical`], [`microfacet`], [`albedo`] |
+//! | (surfaces of real scenes) | [`physical`], [`microfacet`], [`albedo`], [`absorption`] |
 //! | (what no estimator of the lecture finds) | [`lost_light`] |
 //! | (how bright a picture is to be shown) | `AutoExposure` |
 //! | Path Trace Function, A Simple Raytracer, Albedo Termination | [`path`]: `radiance` |
 
+pub mod absorption;
 pub mod albedo;
 mod aov;
 mod auto_exposure;

@@ -81,11 +81,13 @@ impl Reference {
         let mut rays = Rays::default();
         for bounce in 0.. {
             rays.all += 1;
+            let leaving =
+                |from: &Option<Surfel>| from.as_ref().map_or(DVec3::ZERO, |from| from.inner_absorption(direction));
             let Some(hit) = self.closest_hit(origin, direction, f64::INFINITY, salt(2 * bounce)) else {
                 // Hidden from the camera itself.
-                if let Some(body) = from.and_then(|from| from.inner_absorption(direction)) {
-                    throughput *= body.passed(f64::INFINITY);
-                }
+                let ray = (origin, direction);
+                throughput *=
+                    self.passed_bodies(ray, 1.0, f64::INFINITY, salt(2 * bounce), [leaving(&from), DVec3::ZERO]);
                 if bounce > 0 || !settings.transparent {
                     let weight = emission_weight(estimator.light_sampling, pdf, self.environment_pdf(direction));
                     radiance += throughput * weight * self.environment_radiance(direction);
@@ -96,13 +98,11 @@ impl Reference {
             };
             let wo = -direction;
             let surfel = self.surfel(&hit, wo);
-            // Inside of a body, as the surface says that the ray comes to, or else the one that it left.
-            let body = surfel.inner_absorption(wo).or(from.and_then(|from| from.inner_absorption(direction)));
-            if let Some(body) = body {
-                throughput *= body.passed(hit.t);
-            }
+            let (ray, coming) = ((origin, direction), surfel.inner_absorption(wo));
+            throughput *= self.passed_bodies(ray, 1.0, hit.t, salt(2 * bounce), [leaving(&from), coming]);
             if surfel.emission != DVec3::ZERO {
-                let light_pdf = from.filter(|_| pdf.is_some()).map_or(0.0, |from| self.luminaire_pdf(&from, &surfel));
+                let light_pdf =
+                    from.as_ref().filter(|_| pdf.is_some()).map_or(0.0, |from| self.luminaire_pdf(from, &surfel));
                 let weight = emission_weight(estimator.light_sampling, pdf, light_pdf);
                 radiance += throughput * weight * surfel.emission;
             }

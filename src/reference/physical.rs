@@ -120,11 +120,9 @@ impl PhysicalSurface {
         if self.ior == 0.0 { 0.0 } else { self.transmission }
     }
 
-    /// What is not absorbed over a length inside.
-    pub fn passed(&self, length: f64) -> DVec3 {
-        // Nothing of no absorption, however long the way is.
-        let lost = DVec3::select(self.absorption.cmpgt(DVec3::ZERO), self.absorption * length, DVec3::ZERO);
-        (-lost).exp()
+    /// What the body behind the surface absorbs in a unit of length; of a sheet nothing.
+    pub fn inner_absorption(&self) -> DVec3 {
+        if self.body { self.absorption } else { DVec3::ZERO }
     }
 
     /// What the surface reflects and transmits of even light, about: the same for all directions.
@@ -443,6 +441,11 @@ impl Lobes {
                 scattered(coat_colour, !coat.is_smooth()),
             ],
         }
+    }
+
+    /// The surface that they are of.
+    pub fn surface(&self) -> &PhysicalSurface {
+        &self.surface
     }
 
     /// Albedos of the reflection and the transmission by impulses.

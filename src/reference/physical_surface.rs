@@ -3,7 +3,7 @@
 use super::normal_map::Tangent;
 use super::physical::PhysicalSurface;
 use super::prepared_scene::Reference;
-use crate::scene::{ChannelMap, Material};
+use crate::scene::ChannelMap;
 use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
 
@@ -12,14 +12,14 @@ impl Reference {
     /// maps bent it, which is that of a coat (`KHR_materials_clearcoat`).
     pub(super) fn physical_surface(
         &self,
-        material: &Material,
+        material: usize,
         uv: DVec2,
         colour: DVec3,
         tangent: Option<Tangent>,
         outward: DVec3,
         unbent: DVec3,
     ) -> Option<PhysicalSurface> {
-        let p = material.physical.as_ref()?;
+        let p = self.scene.materials[material].physical.as_ref()?;
         let maps = &p.maps;
         let number = |map: Option<ChannelMap>| {
             map.map_or(1.0, |map| self.map(Some(map.texture), uv).to_array()[usize::from(map.channel)])
@@ -33,7 +33,7 @@ impl Reference {
         }
         let (sin, cos) = turn.rem_euclid(TAU).sin_cos();
         let along = |tangent: Tangent| cos * tangent.direction + sin * tangent.bitangent(outward);
-        let own = PhysicalSurface::without_maps(material)?;
+        let own = self.surfaces[material]?;
         Some(PhysicalSurface {
             base: own.base * tint(maps.base_color) * colour,
             metallic: own.metallic * number(maps.metallic),
@@ -45,7 +45,7 @@ impl Reference {
             transmission: own.transmission * number(maps.transmission),
             clearcoat: own.clearcoat * number(maps.clearcoat),
             clearcoat_roughness: own.clearcoat_roughness * number(maps.clearcoat_roughness),
-            coat_normal: if material.bends_normal() { unbent } else { DVec3::ZERO },
+            coat_normal: if self.scene.materials[material].bends_normal() { unbent } else { DVec3::ZERO },
             ..own
         })
     }

@@ -1,6 +1,7 @@
 //! The reference tracer: a scene, and what is made of it before the first ray.
 
 use super::instance::Instance;
+use super::physical::PhysicalSurface;
 use super::tree::Trees;
 use crate::memory::available;
 use crate::scene::{FilmSettings, Integrator, LuminaireTable, Scene, coat_transmittance, widen};
@@ -15,6 +16,10 @@ pub struct Reference {
     pub(super) luminaires: LuminaireTable,
     /// For each material, what [`Surfel::coat_transmittance`](super::surfel::Surfel::coat_transmittance) is.
     pub(super) coats: Vec<f64>,
+    /// For each material its metallic-roughness surface, if it is one, without maps.
+    pub(super) surfaces: Vec<Option<PhysicalSurface>>,
+    /// Whether there is a body that absorbs and is not opaque everywhere.
+    pub(super) pierced_bodies: bool,
     /// Inverse of the pixel filter's distribution; empty for the pixel's own square.
     pub(super) filter: Vec<f32>,
 }
@@ -51,8 +56,19 @@ impl Reference {
             .collect();
         let coated = scene.materials.iter().map(|m| m.eta.filter(|_| m.is_coated()));
         let coats = coated.map(|eta| eta.map_or(1.0, |eta| coat_transmittance(eta.into()))).collect();
+        let surfaces = scene.materials.iter().map(PhysicalSurface::without_maps).collect();
+        let pierced_bodies = scene.materials.iter().any(|material| material.absorbs() && material.has_holes());
         let (luminaires, filter) = (LuminaireTable::new(&scene), filter_table(&scene.film));
-        Reference { scene: scene.into_owned(), instances, trees: None, luminaires, coats, filter }
+        Reference {
+            scene: scene.into_owned(),
+            instances,
+            trees: None,
+            luminaires,
+            coats,
+            surfaces,
+            pierced_bodies,
+            filter,
+        }
     }
 
     /// Takes another integrator. Which luminaires are sampled, and how often, may depend on it: returns the table that there was, if another one was made.
@@ -60,6 +76,13 @@ impl Reference {
         let same = LuminaireTable::is_same_for(&self.scene, integrator);
         self.scene.integrator = *integrator;
         (!same).then(|| std::mem::replace(&mut self.luminaires, LuminaireTable::new(&self.scene)))
+    }
+
+    /// The material of a triangle of an object: the object's, or else the triangle's own.
+    pub(super) fn material_index(&self, object: u32, triangle: u32) -> u32 {
+        let object = &self.scene.objects[object as usize];
+        let own = || self.scene.meshes[object.mesh as usize].triangles[triangle as usize].material;
+        object.material.unwrap_or_else(own)
     }
 
     /// World-space corners of a triangle of an object.

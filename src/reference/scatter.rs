@@ -4,7 +4,7 @@
 //! impulse; what is left of it decides between reflection and transmission, or between the lobes. The first two choose a
 //! direction in the lobe.
 
-use super::bsdf::{bsdf_direction, bsdf_pdf};
+use super::bsdf::{bsdf_and_pdf, bsdf_direction};
 use super::surfel::{Surfel, mean};
 use crate::scene::{Directions, Estimator, Extinction};
 use glam::DVec3;
@@ -30,7 +30,7 @@ pub fn roulette_throughput(throughput: DVec3, bounce: u32, scattered: bool) -> D
 /// that loses least. Fresnel aside, so that it is the same for all directions. Never above 1: nothing makes a path heavier than the light it
 /// stands for.
 pub fn survival(surfel: &Surfel) -> f64 {
-    if let Some(surface) = &surfel.physical {
+    if let Some(surface) = surfel.physical() {
         return surface.hemispherical_albedo().max_element().min(1.0);
     }
     let base = surfel.lambert + surfel.glossy;
@@ -76,25 +76,21 @@ pub fn scatter(surfel: &Surfel, wo: DVec3, directions: Directions, [u, v, lobe]:
 
     let lobe = (lobe - p) / (1.0 - p);
     let wi = bsdf_direction(surfel, wo, directions, [u, v], lobe);
-    let pdf = bsdf_pdf(surfel, wo, wi, directions);
-    let weight = if pdf > 0.0 { surfel.bsdf(wo, wi) * surfel.cosine(wi) / pdf } else { DVec3::ZERO };
-    Scattered { wi, weight, pdf: Some(pdf), eta2: surfel.dilution(wo, wi) }
+    let (value, pdf) = bsdf_and_pdf(surfel, wo, wi, directions);
+    let weight = if pdf > 0.0 { value * surfel.cosine(wi) / pdf } else { DVec3::ZERO };
+    Scattered { wi, weight, pdf: Some(pdf), eta2: surfel.dilution(wi) }
 }
 
-/// The density with which a path goes on to `wi`, per steradian: it chooses that direction, and extinction lets it live. What the power
+/// The density with which a path goes on to a direction that it chooses with the density `pdf`, per steradian: extinction has to let it live. What the power
 /// heuristic has to know: a path that seldom survives seldom finds the light, and counts for the more when it does. Literal extinction is
 /// left out: its survivors do not stand for those that ended.
 ///
-/// `throughput` is that of the path so far, as [`roulette_throughput`] has it.
-pub fn path_pdf(surfel: &Surfel, wo: DVec3, wi: DVec3, throughput: DVec3, estimator: &Estimator) -> f64 {
-    let pdf = bsdf_pdf(surfel, wo, wi, estimator.directions);
+/// `scattered` is the throughput of the path so far, as [`roulette_throughput`] has it, times `f cos eta^2`.
+pub fn path_pdf(pdf: f64, scattered: DVec3, surfel: &Surfel, estimator: &Estimator) -> f64 {
     match estimator.extinction {
         Extinction::Off | Extinction::Literal => pdf,
         Extinction::Surface => pdf * survival(surfel),
-        Extinction::Throughput => {
-            // The throughput behind the surface is this over `pdf`.
-            let scattered = throughput * surfel.bsdf(wo, wi) * surfel.cosine(wi) * surfel.dilution(wo, wi);
-            (scattered.max_element() / SURE_THROUGHPUT).min(pdf)
-        }
+        // The throughput behind the surface is `scattered` over `pdf`.
+        Extinction::Throughput => (scattered.max_element() / SURE_THROUGHPUT).min(pdf),
     }
 }

@@ -53,8 +53,8 @@ pub struct Surfel {
     pub coat_transmittance: f64,
     /// Probability of going on by an impulse, if the material states one.
     pub impulse_probability: Option<f64>,
-    /// The metallic-roughness surface that scatters in place of all these albedos, if it is one.
-    pub physical: Option<PhysicalSurface>,
+    /// The lobes towards `wo` of the metallic-roughness surface that scatters in place of all these albedos, if it is one.
+    pub lobes: Option<Lobes>,
 }
 
 impl Reference {
@@ -85,14 +85,19 @@ impl Reference {
                 }
             }
         }
-        let material = self.scene.material_of(object, triangle);
+        let index = self.material_index(hit.object, hit.triangle) as usize;
+        let material = &self.scene.materials[index];
         let (mut horizon, mut lift) = (None, DVec3::ZERO);
         // What lets light through has no side from which alone it is lit.
         let smooth_terminator = self.scene.integrator.estimator().smooth_terminator && !material.transmits();
         if smooth_terminator && shading_normal != geometric_normal {
             let normals = triangle.vertices.map(|v| mesh.normals[v as usize].as_dvec3());
             let normals = normals.map(|n| facing((normal_to_world * n).normalize_or_zero(), shading_normal));
-            (horizon, lift) = (Some(shading_normal), terminator_lift(position, corners, normals, weights));
+            let up = terminator_lift(position, corners, normals, weights);
+            // From no higher than rounding, as where the normals lean inwards, rays below the triangle's plane would start behind it.
+            if up.dot(geometric_normal) > 2.0 * position_error(corners).dot(geometric_normal.abs()) {
+                (horizon, lift) = (Some(shading_normal), up);
+            }
         }
         let uv = texture_coordinates(mesh, triangle, weights);
         let map = |map: Option<u32>| self.map(map, uv).truncate();
@@ -110,6 +115,7 @@ impl Reference {
             tangent = tangent.and_then(|tangent| tangent.beside(outward_normal));
         }
         let colour = vertex_colour(mesh, triangle, weights);
+        let physical = self.physical_surface(index, uv, colour, tangent, outward_normal, unbent);
         Surfel {
             owner: [hit.object, hit.triangle],
             position: position + lift,
@@ -134,9 +140,9 @@ impl Reference {
             transmission: if material.eta.is_some() { material.transmission.as_dvec3() } else { DVec3::ZERO },
             eta: material.eta.map(f64::from),
             thin: material.is_sheet(),
-            coat_transmittance: self.coats[object.material.unwrap_or(triangle.material) as usize],
+            coat_transmittance: self.coats[index],
             impulse_probability: material.impulse_probability.map(f64::from),
-            physical: self.physical_surface(material, uv, colour, tangent, outward_normal, unbent),
+            lobes: physical.map(|surface| Lobes::new(&surface, shading_normal, front, wo)),
         }
     }
 }
@@ -152,9 +158,9 @@ impl Surfel {
         self.horizon.unwrap_or(self.geometric_normal)
     }
 
-    /// What a metallic-roughness surface does with light towards `wo`; none if it is none.
-    pub fn lobes(&self, wo: DVec3) -> Option<Lobes> {
-        self.physical.map(|surface| Lobes::new(&surface, self.shading_normal, self.front, wo))
+    /// The metallic-roughness surface, if it is one.
+    pub fn physical(&self) -> Option<&PhysicalSurface> {
+        self.lobes.as_ref().map(Lobes::surface)
     }
 
     /// Whether a direction is on one side of both the triangle and the shading normal's plane.
@@ -169,19 +175,19 @@ impl Surfel {
 
     /// What a choice of luminaires has to know of the receiver: the shading normal, of length 2 if light from both of its sides is scattered.
     pub fn receiver(&self) -> DVec3 {
-        let both = self.physical.is_some_and(|surface| surface.scatters_through());
+        let both = self.physical().is_some_and(PhysicalSurface::scatters_through);
         if both { 2.0 * self.shading_normal } else { self.shading_normal }
     }
 
-    /// The surface of the body that a ray which leaves in this direction goes through, if it absorbs.
-    pub fn inner_absorption(&self, direction: DVec3) -> Option<PhysicalSurface> {
+    /// What the body absorbs, in a unit of length, into which a ray leaves in this direction.
+    pub fn inner_absorption(&self, direction: DVec3) -> DVec3 {
         let inwards = (self.geometric_normal.dot(direction) < 0.0) == self.front;
-        self.physical.filter(|surface| surface.body && surface.absorption != DVec3::ZERO && inwards)
+        self.physical().filter(|_| inwards).map_or(DVec3::ZERO, PhysicalSurface::inner_absorption)
     }
 
     /// By how much more a unit of what comes from `wi` is diluted than shares of energy are: `eta^2` of what is refracted.
-    pub fn dilution(&self, wo: DVec3, wi: DVec3) -> f64 {
-        if self.is_above(wi) { 1.0 } else { self.lobes(wo).map_or(1.0, |lobes| lobes.bend().powi(2)) }
+    pub fn dilution(&self, wi: DVec3) -> f64 {
+        if self.is_above(wi) { 1.0 } else { self.lobes.as_ref().map_or(1.0, |lobes| lobes.bend().powi(2)) }
     }
 
     /// Whether what scatters lies under a smooth dielectric ([`crate::scene::Material::is_coated`]).

@@ -1,7 +1,7 @@
 //! What surfaces are made of.
 
 use super::physical::{Physical, PhysicalMaps};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 /// The surface's scattering and emission: normalised Blinn-Phong (slide "Surface Element Class") and impulses (slides "Impulse
 /// Reflection", "Adding Transmission").
@@ -138,6 +138,11 @@ impl Material {
     /// Whether the surface is that of a body that light goes through, which its faces have to enclose.
     pub fn is_body(&self) -> bool {
         self.transmits() && !self.thin
+    }
+
+    /// Whether the surface is that of a body that absorbs what goes through it.
+    pub fn absorbs(&self) -> bool {
+        self.is_body() && self.physical.as_ref().is_some_and(|physical| physical.absorption() != DVec3::ZERO)
     }
 
     /// Whether the surface is a sheet that lets light through: [`Material::thin`] says nothing of what transmits nothing.

@@ -1,6 +1,6 @@
 //! Cells of the microfacets that are seen, in which a lobe of any width is as wide as a hemisphere; and surfaces over a grid to count in them.
 
-use super::scenes::physical_surfel;
+use super::scenes::{physical_surfel, viewed_from};
 use super::statistics::chi_square_against;
 use glam::{DVec3, Vec3};
 use luminaire::reference::fresnel::{reflect, refract};
@@ -61,7 +61,7 @@ pub struct Sampled {
 
 impl Sampled {
     pub fn surfel(&self) -> Surfel {
-        physical_surfel(&self.physical, self.thin, self.front)
+        viewed_from(&physical_surfel(&self.physical, self.thin, self.front), self.wo)
     }
 
     /// How light that goes through is bent.
@@ -84,7 +84,7 @@ impl Sampled {
     /// which are zero, against what the density lacks to 1; and that.
     pub fn plausibility(&self, directions: impl ExactSizeIterator<Item = DVec3>) -> (f64, f64) {
         let n = directions.len() as f64;
-        let lobes = self.surfel().lobes(self.wo).expect("it scatters");
+        let lobes = self.surfel().lobes.expect("it scatters");
         let cells = FacetCells { ggx: self.ggx, wo: self.wo };
         let above = cells.integrate(|h| {
             let (cosine, wi) = (self.wo.dot(h), reflect(self.wo, h));

@@ -1,6 +1,7 @@
 //! What the tests share: scenes built in code, statistics, and what to do where a device is missing.
 #![allow(dead_code, unused_imports)] // Each test binary uses a part of it.
 
+pub mod bodies;
 pub mod devices;
 pub mod directions;
 pub mod facets;

@@ -392,3 +392,18 @@ pub fn coarse_ball(subdivisions: u32, side: u32) -> (Scene, Vec<Option<f64>>) {
     });
     (scene, truth.collect())
 }
+
+/// A sheet of albedo 1 in the plane z = 0 whose vertex normals lean inwards by an angle, with smoothed terminators: lit by parallel light from behind, `elevation` above its
+/// plane and from the side `azimuth`; degrees. All of it is black.
+pub fn hollow_sheet(lean: f32, elevation: f32, azimuth: f32) -> Scene {
+    let mut scene = empty(12, 12);
+    scene.sensor = pinhole(Vec3::new(0.3, 0.2, 3.0), Vec3::ZERO, Vec3::Y, 40.0);
+    let mut sheet = quad(Vec3::new(-1.0, -1.0, 0.0), Vec3::X * 2.0, Vec3::Y * 2.0);
+    let (sin, cos) = lean.to_radians().sin_cos();
+    sheet.normals = sheet.positions.iter().map(|p| Vec3::Z * cos - p.normalize() * sin).collect();
+    add(&mut scene, sheet, matte(Vec3::ONE), Affine3A::IDENTITY);
+    let ((sin, cos), (y, x)) = (elevation.to_radians().sin_cos(), azimuth.to_radians().sin_cos());
+    scene.luminaires.push(Luminaire::Infinite { direction: Vec3::new(-x * cos, -y * cos, sin), irradiance: Vec3::ONE });
+    estimator(&mut scene).smooth_terminator = true;
+    scene
+}

@@ -1,7 +1,7 @@
 //! Small scenes, built in code.
 
 use glam::{Affine2, Affine3A, DVec2, DVec3, Vec2, Vec3};
-use luminaire::reference::physical::PhysicalSurface;
+use luminaire::reference::physical::{Lobes, PhysicalSurface};
 use luminaire::reference::surfel::Surfel;
 pub use luminaire::scene::build::*;
 use luminaire::scene::*;
@@ -64,16 +64,23 @@ pub fn flat_surfel(lambert: DVec3, glossy: DVec3, exponent: f64) -> Surfel {
         thin: false,
         coat_transmittance: 1.0,
         impulse_probability: None,
-        physical: None,
+        lobes: None,
     }
 }
 
-/// A surfel at the origin whose normals are +z, of a metallic-roughness surface without maps; brushed along +x.
+/// A surfel at the origin whose normals are +z, of a metallic-roughness surface without maps; brushed along +x. Seen from +z: elsewhere see [`viewed_from`].
 pub fn physical_surfel(p: &Physical, thin: bool, front: bool) -> Surfel {
     let material = Material { physical: Some(p.clone()), thin, ..Material::default() };
     let surface = PhysicalSurface::without_maps(&material).expect("it has one");
-    let physical = Some(PhysicalSurface { tangent: DVec3::X, ..surface });
-    Surfel { physical, front, ..flat_surfel(DVec3::ZERO, DVec3::ZERO, 0.0) }
+    let surface = PhysicalSurface { tangent: DVec3::X, ..surface };
+    let lobes = Some(Lobes::new(&surface, DVec3::Z, front, DVec3::Z));
+    Surfel { lobes, front, ..flat_surfel(DVec3::ZERO, DVec3::ZERO, 0.0) }
+}
+
+/// The same surfel, seen from another direction.
+pub fn viewed_from(surfel: &Surfel, wo: DVec3) -> Surfel {
+    let lobes = surfel.lobes.map(|lobes| lobes.about(surfel.shading_normal, surfel.front, wo));
+    Surfel { lobes, ..*surfel }
 }
 
 /// A texture from a function of the texel's place.

@@ -3,6 +3,7 @@
 
 use super::pictures::{differing, mean, pixels};
 use super::*;
+use crate::common::bodies::bodies_room;
 use crate::common::relief::{relief_room, smooth_terminators};
 use crate::common::scenes::*;
 use crate::common::stage::*;
@@ -28,6 +29,7 @@ pub fn scenes(size: u32) -> Vec<(&'static str, Scene)> {
         ("stage", stage(size, size)),
         ("relief", relief_room(size, size)),
         ("smooth terminator", smooth_terminators(size, size)),
+        ("bodies", bodies_room(size, size)),
     ]
 }
 
@@ -40,7 +42,7 @@ fn every_feature_equals_the_reference_pixel_by_pixel() {
         if let Integrator::Path(estimator) = &mut scene.integrator {
             estimator.max_bounces = Some(match name {
                 "glass" | "physical" => 3,
-                "relief" => 2,
+                "relief" | "bodies" => 2,
                 _ => 1,
             });
         }
@@ -48,7 +50,7 @@ fn every_feature_equals_the_reference_pixel_by_pixel() {
         on_every_backend(|backend| {
             let found = pixels(&mut backend.tracer(&scene), &scene, 8);
             let tolerance = match name {
-                "physical" => 1e-3,
+                "physical" | "bodies" => 1e-3,
                 "relief" => 2e-3,
                 _ => 2e-4,
             };

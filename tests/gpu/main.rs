@@ -7,6 +7,7 @@
 mod common;
 
 mod aovs;
+mod bodies;
 mod coats;
 mod densities;
 mod error_bar;

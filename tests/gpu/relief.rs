@@ -225,3 +225,17 @@ fn smoothed_terminators_leave_flat_meshes_alone() {
         assert!((0.9..1.005).contains(&found), "{who}: {found}");
     });
 }
+
+/// Where vertex normals lean inwards nothing comes through a sheet from behind, neither at the steps of a bowl nor where they hardly lean.
+#[test]
+fn smoothed_terminators_let_nothing_through_from_behind() {
+    for (lean, elevation) in [(30.0, 10.0), (2.0, 0.5), (0.01, 0.002)] {
+        for azimuth in [20.0, 200.0] {
+            let scene = hollow_sheet(lean, elevation, azimuth);
+            everywhere(&scene, 4, |who, pixels| {
+                let most = pixels.iter().map(|p| p.max_element()).fold(0.0, f64::max);
+                assert!(most == 0.0, "{who}, {lean}, {elevation}, {azimuth}: {most}");
+            });
+        }
+    }
+}

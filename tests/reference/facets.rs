@@ -70,7 +70,7 @@ fn directions_have_their_density_over_a_grid() {
         .par_iter()
         .enumerate()
         .map(|(seed, case)| {
-            let lobes = case.surfel().lobes(case.wo).expect("it scatters");
+            let lobes = case.surfel().lobes.expect("it scatters");
             let directions = (0..N).map(|i| {
                 let [u, v, lobe, _] = random4(i, seed as u32, 2, 18).map(uniform);
                 lobes.direction([u, v], lobe)

@@ -5,6 +5,7 @@ use crate::common::scenes::*;
 use crate::physical::{albedo_of, evenly};
 use glam::{DVec3, Vec3};
 use luminaire::reference::fresnel::fresnel_conductor;
+use luminaire::reference::physical::{Lobes, PhysicalSurface};
 use luminaire::reference::surfel::Surfel;
 use luminaire::reference::warp::cosine_hemisphere;
 use luminaire::scene::*;
@@ -37,7 +38,8 @@ fn sent_out(surfel: &Surfel, wi: DVec3) -> f64 {
     let n = 20_000;
     let one = |i| {
         let [u, v, _] = evenly(i);
-        surfel.bsdf(cosine_hemisphere(DVec3::Z, u, v), wi).x * PI
+        let wo = cosine_hemisphere(DVec3::Z, u, v);
+        viewed_from(surfel, wo).bsdf(wo, wi).x * PI
     };
     (0..n).map(one).sum::<f64>() / f64::from(n)
 }
@@ -57,7 +59,7 @@ fn coats_take_their_share_of_what_arrives() {
         let surfel = physical_surfel(&coated, false, true);
         for degrees in [30.0, 60.0, 75.0, 85.0] {
             let wi = tilted(degrees);
-            let [coat, _] = surfel.lobes(wi).expect("a surface").impulses();
+            let [coat, _] = viewed_from(&surfel, wi).lobes.expect("a surface").impulses();
             let all = coat.x + sent_out(&surfel, wi);
             // Of a rough metal the lesser of two shares comes back, never more.
             assert!((0.93..1.005).contains(&all), "metallic {metallic}, roughness {roughness}, {degrees}: {all}");
@@ -78,7 +80,10 @@ fn coats_take_their_share_of_what_arrives() {
     };
     let coated = physical_surfel(&coated, false, true);
     for (out, into) in [(5.0, 85.0), (60.0, 80.0), (80.0, 20.0)] {
-        let (a, b) = (coated.bsdf(tilted(out), tilted(into)).x, varnished.bsdf(tilted(out), tilted(into)).x);
+        let (a, b) = (
+            viewed_from(&coated, tilted(out)).bsdf(tilted(out), tilted(into)).x,
+            varnished.bsdf(tilted(out), tilted(into)).x,
+        );
         assert!((a / b - 1.0).abs() < 2e-3, "{out} {into}: {a} {b}");
     }
 }
@@ -110,10 +115,10 @@ fn great_indices_reflect_no_less_than_nothing() {
             let surfel = physical_surfel(&p, false, true);
             for degrees in [0.0, 40.0, 65.0, 75.0, 82.0, 89.0] {
                 let wo = tilted(degrees);
-                let [mirrored, _] = surfel.lobes(wo).expect("a surface").impulses();
+                let [mirrored, _] = viewed_from(&surfel, wo).lobes.expect("a surface").impulses();
                 assert!(mirrored.min_element() >= 0.0, "{ior} {degrees}: {mirrored}");
                 for wi in [5.0, 60.0, 80.0].map(tilted) {
-                    let value = surfel.bsdf(wo, DVec3::new(-wi.x, 0.1, wi.z).normalize());
+                    let value = viewed_from(&surfel, wo).bsdf(wo, DVec3::new(-wi.x, 0.1, wi.z).normalize());
                     assert!(value.min_element() >= 0.0, "{ior} {roughness} {degrees}: {value}");
                 }
                 let white = Physical { specular_color: Vec3::ONE, base_color: Vec3::ONE, ..p.clone() };
@@ -159,10 +164,11 @@ fn coats_are_not_bent() {
             ..Physical::default()
         };
         let flat = physical_surfel(&p, false, true);
-        let mut physical = flat.physical;
-        physical.as_mut().expect("a surface").coat_normal = DVec3::Z;
-        let mapped = Surfel { shading_normal: bent, physical, ..flat };
+        let surface = PhysicalSurface { coat_normal: DVec3::Z, ..*flat.physical().expect("a surface") };
         for wo in [tilted(0.0), tilted(20.0), tilted(-10.0)] {
+            let flat = viewed_from(&flat, wo);
+            let lobes = Some(Lobes::new(&surface, bent, true, wo));
+            let mapped = Surfel { shading_normal: bent, lobes, ..flat };
             let (a, b) = (flat.impulses(wo), mapped.impulses(wo));
             assert!((a.reflected - b.reflected).length() < 1e-12 && (a.reflection - b.reflection).length() < 1e-12);
             for i in 0..200 {

@@ -35,6 +35,7 @@ pub fn evenly(i: u32) -> [f64; 3] {
 
 /// All that is scattered towards `wo`, impulses included: the mean weight.
 pub fn albedo_of(surfel: &Surfel, wo: DVec3, n: u32) -> DVec3 {
+    let surfel = &viewed_from(surfel, wo);
     let sum: DVec3 = (0..n)
         .map(|i| {
             let scattered = scatter(surfel, wo, Directions::Bsdf, evenly(i));
@@ -90,11 +91,11 @@ fn lobes_have_their_density() {
             // Across what is brushed, too.
             let turned = |w: DVec3| DVec3::new(0.8 * w.x, 0.6 * w.x, w.z);
             let wo = turned(tilted(*degrees));
-            let lobes = surfel.lobes(wo).expect("it has lobes");
+            let lobes = viewed_from(surfel, wo).lobes.expect("it has lobes");
             // Narrow about what a smooth surface reflects and transmits.
             let through = lobes.impulse_directions(DVec3::Z, wo)[1];
             let above = Cells { axis: turned(tilted(-degrees)), power: 3 };
-            let p = surfel.physical.expect("a surface");
+            let p = surfel.physical().expect("a surface");
             let straight = through == DVec3::ZERO || (p.roughness > 0.5 && p.ior < 1.2);
             let below = Cells { axis: if straight { -wo } else { through }, power: 4 };
             let density = |side: f64| {
@@ -133,6 +134,7 @@ fn scatter_gives_value_over_density() {
         all.push(("smooth".into(), physical_surfel(&smooth, false, front)));
     }
     for (name, surfel) in all {
+        let surfel = viewed_from(&surfel, tilted(35.0));
         for directions in [Directions::Bsdf, Directions::Cosine, Directions::Uniform] {
             let wo = tilted(35.0);
             for i in 0..200 {
@@ -157,7 +159,7 @@ fn scatter_gives_value_over_density() {
             });
             Estimate::new(weights)
         };
-        if surfel.physical.is_some_and(|p| p.roughness > 0.5) {
+        if surfel.physical().is_some_and(|p| p.roughness > 0.5) {
             let (a, b) = (mean(Directions::Bsdf), mean(Directions::Uniform));
             let z = (a.mean - b.mean) / a.error.hypot(b.error);
             assert!(two_sided(z) > SIGNIFICANCE / 40.0, "{name}: {a:?} {b:?}");
@@ -287,13 +289,13 @@ fn reciprocity_fails_by_no_more_than_is_said() {
         (wo, uniform_hemisphere(DVec3::Z, c, d))
     };
     for (name, surfel) in kinds() {
-        let p = surfel.physical.expect("one");
+        let p = surfel.physical().expect("one");
         if p.transmission > 0.0 || p.clearcoat > 0.0 {
             continue;
         }
         for i in 0..500 {
             let (wo, wi) = pair(i);
-            let (there, back) = (surfel.bsdf(wo, wi), surfel.bsdf(wi, wo));
+            let (there, back) = (viewed_from(&surfel, wo).bsdf(wo, wi), viewed_from(&surfel, wi).bsdf(wi, wo));
             let width = p.roughness * p.roughness;
             let ggx = Ggx { x: width + (1.0 - width) * p.anisotropy * p.anisotropy, y: width };
             let missing = |w: DVec3| match p.anisotropy > 0.0 && ggx.x > ggx.y {
@@ -316,7 +318,7 @@ fn reciprocity_fails_by_no_more_than_is_said() {
         let surfel = physical_surfel(&coated, false, true);
         for i in 0..500 {
             let (wo, wi) = pair(i);
-            let (there, back) = (surfel.bsdf(wo, wi).x, surfel.bsdf(wi, wo).x);
+            let (there, back) = (viewed_from(&surfel, wo).bsdf(wo, wi).x, viewed_from(&surfel, wi).bsdf(wi, wo).x);
             let bound = 1.0 + 1e-9 + if clearcoat_roughness > 0.0 { 0.02 } else { 0.0 };
             assert!((there / back).max(back / there) < bound, "{coated:?}: {there} {back}");
         }
@@ -448,7 +450,8 @@ fn smooth_surfaces_are_impulses() {
         };
         let new = physical_surfel(&Physical { base_color: Vec3::new(0.5, 0.7, 0.9), ..glass(0.0, 1.5) }, false, front);
         for degrees in [0.0, 30.0, 41.0, 60.0, 88.0] {
-            let (a, b) = (old.impulses(tilted(degrees)), new.impulses(tilted(degrees)));
+            let wo = tilted(degrees);
+            let (a, b) = (old.impulses(wo), viewed_from(&new, wo).impulses(wo));
             assert!((a.reflection - b.reflection).length() < 1e-6, "{degrees}: {a:?} {b:?}");
             assert!((a.transmission - b.transmission).length() < 1e-6, "{degrees}: {a:?} {b:?}");
             assert!(a.reflected == b.reflected && a.transmitted == b.transmitted && a.eta == b.eta);

@@ -2,6 +2,7 @@
 
 use crate::common::relief::*;
 use crate::common::scenes::*;
+use crate::transport::means;
 use glam::{Affine3A, DVec3, Vec2, Vec3};
 use luminaire::reference::fresnel::reflect;
 use luminaire::reference::normal_map::{LEAST_REFLECTED, guarded_normal, surface_gradient};
@@ -102,6 +103,17 @@ fn tangents_go_around_a_ball() {
                 assert!(tangent.truncate().dot(east) > 0.99, "{p}: {tangent}");
                 assert_eq!(tangent.w, 1.0);
             }
+        }
+    }
+}
+
+/// Where vertex normals lean inwards nothing comes through a sheet from behind, though the terminator is smoothed.
+#[test]
+fn smoothed_terminators_let_nothing_through_from_behind() {
+    for (lean, elevation) in [(30.0, 10.0), (2.0, 0.5), (0.01, 0.002)] {
+        for azimuth in [0.0, 45.0, 110.0, 200.0, 290.0] {
+            let found = means(&hollow_sheet(lean, elevation, azimuth), 16);
+            assert!(found.iter().all(|channel| channel.mean == 0.0), "{lean}, {elevation}, {azimuth}: {found:?}");
         }
     }
 }

@@ -21,12 +21,8 @@ pub(in crate::gpu) fn luminaires(scene: &Scene, table: &LuminaireTable, places: 
     for (index, entry) in table.entries.iter().enumerate() {
         let (threshold, alias_index) = table.choice.slots[index];
         let pdf = table.choice.pdf[index];
-        let ideal = match entry {
-            SampledLuminaire::Area(triangle) => table.area_probability(triangle.material, triangle.area()),
-            SampledLuminaire::Impulse(_) | SampledLuminaire::Sun(_) | SampledLuminaire::Environment => pdf,
-        };
         let slot = layout::Luminaire {
-            ideal_probability: ideal as f32,
+            ideal_probability: table.ideal_probability(index) as f32,
             probability: pdf as f32,
             threshold,
             alias_index,
