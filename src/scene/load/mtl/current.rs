@@ -47,6 +47,9 @@ impl Current {
         self.words.names().into_iter().for_each(|word| self.ignore(word));
         self.impulses(at);
         self.multipliers_of_maps(at);
+        if self.draft.glossy == Some(Vec3::ZERO) && self.draft.maps.glossy.file().is_some() {
+            self.shared.push("map_Ks does nothing where Ks is 0".into());
+        }
         self.finished(file)
     }
 
