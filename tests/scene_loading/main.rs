@@ -9,6 +9,7 @@ mod free_form;
 mod hostile;
 mod ies;
 mod lamps;
+mod mapped_numbers;
 mod mtl;
 mod obj;
 mod own_scenes;

@@ -51,7 +51,7 @@ fn inspect_lists_metallic_roughness_surfaces() {
     let output = folder.luminaire(&["inspect", "m.obj"]).output().unwrap();
     let said = String::from_utf8_lossy(&output.stdout);
     for part in [
-        "metallic-roughness: base colour (0.5 0.25 1), metallic 1, roughness 1, index 1.5; roughness map a.ppm, red",
+        "metallic-roughness: base colour (0.5 0.25 1), metallic 1, roughness 1; roughness map a.ppm, red",
         "roughness 0.25, index 1.5; transmission 1; sheen (1 1 1) of roughness 0.5",
         "m.mtl: written by Blender",
     ] {

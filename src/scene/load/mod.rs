@@ -32,6 +32,7 @@ mod toml;
 
 pub use camera::use_camera;
 pub use choices::{Choices, Sky, Up};
+pub use metals::metal_name;
 pub use scene_file::{SceneFile, scene_file};
 
 use crate::scene::Scene;

@@ -284,7 +284,8 @@ impl PhysicalDraft {
         }
         if !said.is_empty() {
             let said = said.join(", ");
-            warnings.push(format!("material `{name}`: without the map that cannot be used {said}, as if none was named"));
+            warnings
+                .push(format!("material `{name}`: without the map that cannot be used {said}, as if none was named"));
         }
     }
 

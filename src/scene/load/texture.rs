@@ -251,7 +251,7 @@ impl Textures {
         *self.by_place.entry((texture, bits)).or_insert_with(|| {
             self.loaded.push(Texture { transform, ..Texture::clone(&source) }.into());
             self.ranges.push(self.ranges[texture as usize]);
-            self.looks.push(self.looks(texture));
+            self.looks.push(self.looks[texture as usize]);
             self.loaded.len() as u32 - 1
         })
     }

@@ -8,7 +8,7 @@ use glam::Vec3;
 const MIRROR_EXPONENT: f32 = 1000.0;
 
 /// So many features that nothing models are named for a material.
-const MOST_IGNORED: usize = 32;
+pub(super) const MOST_IGNORED: usize = 32;
 
 /// The material between two `newmtl`.
 #[derive(Clone, Default)]

@@ -2,6 +2,7 @@
 
 use super::advice::name_hint;
 use super::file::File;
+use super::radians;
 use super::tables::{ConductorEntry, MapChannel, MapEntry, MaterialTable, Model, PlacedMap};
 use super::values::Transmission;
 use crate::scene::load::material_draft::{Draft, DraftMaps, MapDraft};
@@ -92,6 +93,11 @@ impl File<'_> {
             ..Draft::default()
         };
         draft.notes = draft.idle_maps();
+        let turned = table.anisotropy_rotation.and_then(|turn| radians::turn("anisotropy_rotation", turn.0 as f32));
+        draft.notes.extend(turned.map(|warning| {
+            let (line, _) = line_and_column(self.text, self.key(number, "anisotropy_rotation").start);
+            format!("{}:{line}: {warning}", self.path.display())
+        }));
         Ok(draft)
     }
 
