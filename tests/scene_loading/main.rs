@@ -11,6 +11,7 @@ mod ies;
 mod lamps;
 mod mapped_numbers;
 mod mtl;
+mod mtl_slips;
 mod obj;
 mod own_scenes;
 mod physical;

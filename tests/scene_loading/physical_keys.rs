@@ -176,9 +176,9 @@ fn what_is_wrong_is_found_with_line_and_column() {
     fails("conductor = { eta = [1, 1, 1], k = [1, -1, 1] }", 36, &["negative"]);
     fails("model = \"cartoon\"", 9, &["blinn-phong", "metallic-roughness"]);
     fails("roughness_map = \"gone.png\"", 17, &["gone.png"]);
-    fails("roughness_map = { image = \"a.png\", channel = \"x\" }", 45, &["`x`", "`luminance`"]);
-    fails("roughness_map = { image = \"a.png\", chanel = \"r\" }", 35, &["`chanel` of a map", "`channel`?"]);
-    fails("roughness_map = { image = \"a.png\", scale = [0, 1] }", 43, &["other than 0"]);
+    fails("roughness_map = { image = \"a.png\", channel = \"x\" }", 46, &["`x`", "`luminance`"]);
+    fails("roughness_map = { image = \"a.png\", chanel = \"r\" }", 36, &["`chanel` of a map", "`channel`?"]);
+    fails("roughness_map = { image = \"a.png\", scale = [0, 1] }", 44, &["other than 0"]);
     fails("base_colour_map = { image = \"a.png\", channel = \"r\" }", 19, &["one number"]);
     fails("anisotropy_map = { image = \"a.png\", channel = \"r\" }", 18, &["one number"]);
 }

@@ -92,7 +92,7 @@ pub(super) fn parse(rest: &str, folder: &Path, at: String) -> Result<MapStatemen
     if name.is_empty() {
         return Err("no file name".into());
     }
-    if !there(name, folder) {
+    if name.contains(" -") && !there(name, folder) {
         // Options belong before the name, and some write them behind it.
         let options = &rest[..rest.len() - name.len()];
         let tails = name.match_indices(" -").filter(|(at, _)| there(&name[..*at], folder));
