@@ -172,6 +172,7 @@ fn a_map_that_cannot_be_used_makes_no_number() {
         let grey = Physical { sheen_roughness: surface.sheen_roughness, ..grey.clone() };
         assert_eq!(surface, grey, "{lines}{mtl}");
         warned(&scene, &["material `m`: without the map that cannot be used", said]);
+        assert!(!scene.warnings.iter().any(|w| w.contains("does nothing")), "{lines}{mtl}: {:?}", scene.warnings);
     }
     let metal = physical(&loaded("metallic_map = \"bad.png\"\nconductor = \"gold\"\n", "newmtl m\n"));
     assert_eq!(metal.metallic, 1.0);

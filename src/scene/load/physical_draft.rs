@@ -217,68 +217,39 @@ impl PhysicalDraft {
     fn without_lost_maps(&self, name: &str, metal: f32, surface: &mut Physical, warnings: &mut Vec<String>) {
         let (default, maps, loaded) = (Physical::default(), &self.maps, surface.maps);
         let (coat, sheen) = (surface.clearcoat > 0.0, surface.sheen_color != Vec3::ZERO);
-        let lost = |stated: bool, map: &MapDraft, there: bool| !stated && map.file().is_some() && !there;
+        let lost =
+            |stated: Option<f32>, map: &MapDraft, there: bool| stated.is_none() && map.file().is_some() && !there;
+        let coat_roughness =
+            lost(self.clearcoat_roughness, &maps.clearcoat_roughness, loaded.clearcoat_roughness.is_some());
+        let sheen_roughness = lost(self.sheen_roughness, &maps.sheen_roughness, loaded.sheen_roughness.is_some());
+        let numbers = [
+            ("metallic", lost(self.metallic, &maps.metallic, loaded.metallic.is_some())),
+            ("roughness", lost(self.roughness, &maps.roughness, loaded.roughness.is_some())),
+            ("anisotropy", lost(self.anisotropy, &maps.anisotropy, loaded.anisotropy.is_some())),
+            ("transmission", lost(self.transmission, &maps.transmission, loaded.transmission.is_some())),
+            ("clearcoat", lost(self.clearcoat, &maps.clearcoat, loaded.clearcoat.is_some())),
+            ("clearcoat_roughness", coat && coat_roughness),
+            ("sheen_roughness", sheen && sheen_roughness),
+            ("iridescence", lost(self.iridescence, &maps.iridescence, loaded.iridescence.is_some())),
+        ];
+        let places = [
+            (&mut surface.metallic, metal),
+            (&mut surface.roughness, default.roughness),
+            (&mut surface.anisotropy, default.anisotropy),
+            (&mut surface.transmission, default.transmission),
+            (&mut surface.clearcoat, default.clearcoat),
+            (&mut surface.clearcoat_roughness, default.clearcoat_roughness),
+            (&mut surface.sheen_roughness, default.sheen_roughness),
+            (&mut surface.iridescence, default.iridescence),
+        ];
         let mut said = Vec::new();
-        for (key, lost, number, default) in [
-            (
-                "metallic",
-                lost(self.metallic.is_some(), &maps.metallic, loaded.metallic.is_some()),
-                &mut surface.metallic,
-                metal,
-            ),
-            (
-                "roughness",
-                lost(self.roughness.is_some(), &maps.roughness, loaded.roughness.is_some()),
-                &mut surface.roughness,
-                default.roughness,
-            ),
-            (
-                "anisotropy",
-                lost(self.anisotropy.is_some(), &maps.anisotropy, loaded.anisotropy.is_some()),
-                &mut surface.anisotropy,
-                default.anisotropy,
-            ),
-            (
-                "transmission",
-                lost(self.transmission.is_some(), &maps.transmission, loaded.transmission.is_some()),
-                &mut surface.transmission,
-                default.transmission,
-            ),
-            (
-                "clearcoat",
-                lost(self.clearcoat.is_some(), &maps.clearcoat, loaded.clearcoat.is_some()),
-                &mut surface.clearcoat,
-                default.clearcoat,
-            ),
-            (
-                "clearcoat_roughness",
-                coat && lost(
-                    self.clearcoat_roughness.is_some(),
-                    &maps.clearcoat_roughness,
-                    loaded.clearcoat_roughness.is_some(),
-                ),
-                &mut surface.clearcoat_roughness,
-                default.clearcoat_roughness,
-            ),
-            (
-                "sheen_roughness",
-                sheen && lost(self.sheen_roughness.is_some(), &maps.sheen_roughness, loaded.sheen_roughness.is_some()),
-                &mut surface.sheen_roughness,
-                default.sheen_roughness,
-            ),
-            (
-                "iridescence",
-                lost(self.iridescence.is_some(), &maps.iridescence, loaded.iridescence.is_some()),
-                &mut surface.iridescence,
-                default.iridescence,
-            ),
-        ] {
+        for ((key, lost), (number, default)) in numbers.into_iter().zip(places) {
             if lost {
                 *number = default;
                 said.push(format!("`{key}` is {default}"));
             }
         }
-        if lost(self.sheen_color.is_some(), &maps.sheen_color, loaded.sheen_color.is_some()) {
+        if lost(self.sheen_color.map(|colour| colour.x), &maps.sheen_color, loaded.sheen_color.is_some()) {
             surface.sheen_color = default.sheen_color;
             said.push("`sheen_colour` is black".into());
         }
@@ -301,6 +272,8 @@ impl PhysicalDraft {
         let depth = self.attenuation_distance.is_some() || self.attenuation_color.is_some();
         let tinted_reflection = self.specular_color.is_some() || self.maps.specular_color.file().is_some();
         let tinted = self.attenuation_color.is_some_and(|colour| colour != Vec3::ONE);
+        // Of a map that cannot be used enough is said.
+        let none = |number: f32, map: &MapDraft| number == 0.0 && map.file().is_none();
         let idle = [
             (surface.transmission > 0.0 && metal, "`transmission`", "where `metallic` is 1"),
             (thin && !transmits, "`thin`", "without `transmission`"),
@@ -310,9 +283,21 @@ impl PhysicalDraft {
             (surface.dispersion > 0.0 && (!transmits || thin), "`dispersion`", "without a body that transmits"),
             (surface.conductor.is_some() && surface.metallic == 0.0, "`conductor`", "where `metallic` is 0"),
             (tinted_reflection && surface.specular == 0.0, "`specular_colour`", "where `specular` is 0"),
-            (coat_roughness && surface.clearcoat == 0.0, "`clearcoat_roughness`", "without `clearcoat`"),
-            (sheen_roughness && surface.sheen_color == Vec3::ZERO, "`sheen_roughness`", "without `sheen_colour`"),
-            (film && surface.iridescence == 0.0, "the film of `iridescence`", "without `iridescence`"),
+            (
+                coat_roughness && none(surface.clearcoat, &self.maps.clearcoat),
+                "`clearcoat_roughness`",
+                "without `clearcoat`",
+            ),
+            (
+                sheen_roughness && none(surface.sheen_color.max_element(), &self.maps.sheen_color),
+                "`sheen_roughness`",
+                "without `sheen_colour`",
+            ),
+            (
+                film && none(surface.iridescence, &self.maps.iridescence),
+                "the film of `iridescence`",
+                "without `iridescence`",
+            ),
             (
                 self.anisotropy_rotation.is_some() && surface.anisotropy == 0.0,
                 "`anisotropy_rotation`",
