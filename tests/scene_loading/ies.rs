@@ -164,7 +164,7 @@ fn wrong_files_are_found_with_their_line() {
     lamp_fails(&plain("1 two 3"), 9, &["a candela value", "`two`"]);
     lamp_fails(&plain("1 nan 3"), 9, &["a candela value", "`nan`"]);
     lamp_fails(&plain("1 -2 3"), 9, &["at least 0", "-2"]);
-    lamp_fails(&plain("1 1e39 3"), 9, &["too many"]);
+    lamp_fails(&plain("1 1e39 3"), 9, &["1e39 candelas, times", "too many"]);
     let with = |from: &str, to: &str| plain("1 2 3").replace(from, to);
     lamp_fails(&with("1 1000 2 3", "1 1000 0 3"), 5, &["candela multiplier", "above 0", "found 0"]);
     lamp_fails(&with("1 1 60", "-1 1 60"), 6, &["ballast factor", "above 0"]);
@@ -230,12 +230,17 @@ fn profiles_are_files() {
         ("up = [0, 3, 0]\n", "not along `direction`"),
         ("up = [0, 0, 0]\n", "not along `direction`"),
         ("direction = [0, 0, 0]\n", "zero vector"),
-        ("outer_angle = 3\n", "`profile`"),
-        ("irradiance = [1, 1, 1]\n", "`profile`"),
     ] {
         let error = of(more);
         assert!(error.contains("scene.toml:11:1") && error.contains(words), "{error}");
     }
+    for (more, words) in
+        [("outer_angle = 3\n", "`outer_angle` is too much"), ("irradiance = [1, 1, 1]\n", "`irradiance` is too much")]
+    {
+        let error = of(more);
+        assert!(error.contains("scene.toml:15:1") && error.contains(words) && error.contains("`profile`"), "{error}");
+    }
+    scene(&luminaire("", "")).fails_at("scene.toml", "scene.toml", (14, 11), &["empty name", "an IES file"]);
     let spot = "[[luminaire]]\nkind = \"spot\"\nposition = [0, 1, 0]\nprofile = \"lamp.ies\"\n";
     toml_fails(spot, (1, 1), &["`profile` is for a luminaire of the kind \"point\""]);
 }
@@ -264,9 +269,10 @@ fn spots_and_suns() {
         ("outer_angle = nan\n", (6, 15), "0 to 90"),
         ("outer_angle = 0\n", (1, 1), "from 0.0001 to 90"),
         ("outer_angle = 20\ninner_angle = 21\n", (7, 15), "at most the `outer_angle`, 20 degrees, found 21"),
-        ("inner_angle = 20\n", (1, 1), "`outer_angle`"),
-        ("outer_angle = 20\nangle = 3\n", (1, 1), "nothing else"),
-        ("outer_angle = 20\nup = [1, 0, 0]\n", (1, 1), "nothing else"),
+        ("inner_angle = 20\n", (1, 1), "`outer_angle` is missing here: a spot has"),
+        ("angle = 20\n", (6, 1), "`outer_angle` is missing here, and `angle` is too much: a spot has"),
+        ("outer_angle = 20\nangle = 3\n", (7, 1), "`angle` is too much: a spot has"),
+        ("outer_angle = 20\nangle = 3\nup = [1, 0, 0]\n", (8, 1), "`up`, `angle` are too much: a spot has"),
         ("outerConeAngle = 0.5\n", (6, 1), "`outer_angle`"),
         ("cone = 0.5\n", (6, 1), "in degrees from its axis"),
     ] {
@@ -276,7 +282,7 @@ fn spots_and_suns() {
         ("angle = 181\n", (5, 9), "0.0001 to 180"),
         ("angle = 1e-5\n", (5, 9), "0 for parallel light"),
         ("angle = -0.5\n", (5, 9), "0.0001 to 180"),
-        ("outer_angle = 5\n", (1, 1), "nothing else"),
+        ("outer_angle = 5\n", (5, 1), "`outer_angle` is too much: an infinite luminaire has"),
         ("diameter = 5\n", (5, 1), "`angle`"),
     ] {
         toml_fails(&format!("{sun}{more}"), at, &[words]);
@@ -288,6 +294,17 @@ fn spots_and_suns() {
     warned(&scene(&format!("{spot}outer_angle = 0.785\n")).load("scene.toml"), &["scene.toml:11", "radians", "45.0"]);
     let point = "[[luminaire]]\nkind = \"point\"\nposition = [0, 1, 0]\nintensity = [1, 1, 1]\n";
     for more in ["direction = [0, 1, 0]\n", "outer_angle = 3\n", "angle = 3\n", "up = [0, 1, 0]\n"] {
-        toml_fails(&format!("{point}{more}"), (1, 1), &["a point luminaire", "nothing else"]);
+        let key = format!("`{}` is too much", more.split(' ').next().expect("a key"));
+        toml_fails(&format!("{point}{more}"), (5, 1), &[&key, "a point luminaire", "nothing else"]);
     }
+    toml_fails(
+        "[[luminaire]]\nkind = \"point\"\nposition = [0, 1, 0]\n",
+        (1, 1),
+        &["`intensity` is missing here: a point luminaire"],
+    );
+    warned(
+        &scene(&format!("{spot}outer_angle = 20\ninner_angle = 0.35\n")).load("scene.toml"),
+        &["inner_angle", "20.1"],
+    );
+    warned(&scene(&format!("{sun}angle = 0.00925\n")).load("scene.toml"), &["scene.toml:11", "radians", "0.53"]);
 }

@@ -242,14 +242,8 @@ fn what_blender_wrote_is_principled() {
         (blenders(250.0, 1.0, 0.5, &format!("{opaque} 2")), GREY),
         (blenders(490.0, 1.0, 0.5, &format!("{opaque} 3")), Physical { metallic: 1.0, roughness: 0.3, ..GREY }),
         (blenders(562.5, 0.5, 0.5, &format!("{opaque} 3")), Physical { metallic: 0.5, roughness: 0.25, ..GREY }),
-        (
-            blenders(250.0, 1.0, 0.0, &format!("{opaque} 1")),
-            Physical { specular: 0.0, specular_color: Vec3::ZERO, ..GREY },
-        ),
-        (
-            blenders(250.0, 0.25, 0.0, &format!("{opaque} 1")),
-            Physical { metallic: 0.25, specular: 0.0, specular_color: Vec3::ZERO, ..GREY },
-        ),
+        (blenders(250.0, 1.0, 0.0, &format!("{opaque} 1")), Physical { specular: 0.0, ..GREY }),
+        (blenders(250.0, 0.25, 0.0, &format!("{opaque} 1")), Physical { metallic: 0.25, specular: 0.0, ..GREY }),
         (
             blenders(0.0, 1.0, 1.0, &format!("{opaque} 2")),
             Physical { roughness: 1.0, specular_color: Vec3::splat(2.0), ..GREY },

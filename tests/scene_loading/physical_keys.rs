@@ -168,14 +168,17 @@ fn what_is_wrong_is_found_with_line_and_column() {
     fails("transmission = [1, -1, 1]", 16, &["negative"]);
     fails("transmission = \"all\"", 16, &["three numbers", "or one"]);
     fails("dispersion = -1", 14, &["at least 0"]);
-    fails("iridescence_thickness = [1, 2, 3]", 25, &["nanometres"]);
+    fails("iridescence_thickness = [1, 2, 3]", 25, &["two numbers, found 3"]);
     fails("iridescence_thickness = -1", 25, &["nanometres"]);
     fails("anisotropy_rotation = inf", 23, &["finite"]);
     fails("conductor = \"unobtainium\"", 13, &["no metal is called \"unobtainium\"", "\"gold\"", "eta = "]);
-    fails("conductor = { eta = [1, 1, 1] }", 13, &["eta = [r, g, b], k = [r, g, b]"]);
+    fails("conductor = { eta = [1, 1, 1] }", 13, &["`k`", "extinction coefficient [r, g, b]"]);
+    fails("conductor = { eta = [1, 1, 1], k = [1, -1, 1] }", 36, &["negative"]);
     fails("model = \"cartoon\"", 9, &["blinn-phong", "metallic-roughness"]);
     fails("roughness_map = \"gone.png\"", 17, &["gone.png"]);
-    fails("roughness_map = { image = \"a.png\", channel = \"x\" }", 17, &["channel", "\"luminance\""]);
+    fails("roughness_map = { image = \"a.png\", channel = \"x\" }", 46, &["`x`", "`luminance`"]);
+    fails("roughness_map = { image = \"a.png\", chanel = \"r\" }", 36, &["`chanel` of a map", "`channel`?"]);
+    fails("roughness_map = { image = \"a.png\", scale = [0, 1] }", 44, &["other than 0"]);
     fails("base_colour_map = { image = \"a.png\", channel = \"r\" }", 19, &["one number"]);
     fails("anisotropy_map = { image = \"a.png\", channel = \"r\" }", 18, &["one number"]);
 }

@@ -45,7 +45,11 @@ fn every_word_of_mtl_is_read() {
         ("map_Bump -bm 0.5 n.png", [n(0.5), None], Some(["mesh.mtl:2", "looks like a map of normals"])),
         ("norm -bm 2 n.png\nbump n.png", [n(2.0), None], None),
         // Whoever writes `norm` means it.
-        ("norm h.png", [Some(("h.png".to_owned(), 1.0)), None], None),
+        (
+            "norm h.png",
+            [Some(("h.png".to_owned(), 1.0)), None],
+            Some(["mesh.mtl:2", "`norm` is grey and looks like heights, which is `map_Bump`"]),
+        ),
         ("Pr 0.4\nnorm n.png", [n(1.0), None], None),
         ("Pm 1\nbump h.png", [None, h(1.0)], None),
         ("norm none.png", [None, None], Some(["mesh.mtl:2", "there is no map then"])),

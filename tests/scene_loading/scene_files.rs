@@ -163,3 +163,32 @@ fn only_a_bare_model_is_written_down() {
     let error = scene_file(&folder.path("mash.obj"), &Choices::default(), &folder.path("")).unwrap_err();
     assert!(error.exit_code() == 1 && error.to_string().contains("there is mesh.obj"), "{error}");
 }
+
+/// Every key that a scene file may have is in it, with what it means: whoever has only the program has nothing else to read.
+#[test]
+fn every_key_is_written_down() {
+    let folder = obj(TRIANGLE);
+    let text = scene_file(&folder.path("mesh.obj"), &Choices::default(), &folder.path("")).expect("a scene file").text;
+    let words: std::collections::HashSet<&str> = text.split(|c: char| !c.is_alphanumeric() && c != '_').collect();
+    for table in [
+        "[film]",
+        "[sensor]",
+        "[environment]",
+        "[ground]",
+        "[integrator]",
+        "[render]",
+        "[[object]]",
+        "[[material]]",
+        "[[luminaire]]",
+    ] {
+        let wrong = folder.0.path().join("wrong.toml");
+        std::fs::write(&wrong, format!("{table}\nno_such_key = 1\n")).expect("a file");
+        let message = folder.error("wrong.toml").to_string();
+        let (_, list) = message.split_once("there are `").expect("a list of the keys");
+        let keys: Vec<&str> = list.trim_end_matches('`').split("`, `").collect();
+        assert!(keys.len() >= 3, "{message}");
+        for key in keys {
+            assert!(words.contains(key), "`{key}` of {table} is not written down");
+        }
+    }
+}

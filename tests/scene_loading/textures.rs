@@ -332,10 +332,14 @@ fn a_scene_file_places_maps() {
     assert_eq!(diffuse(&placed).transform, expected);
     assert_eq!(diffuse(&scene("{ image = \"a.png\" }").load("scene.toml")).transform, Affine2::IDENTITY);
     assert_eq!(first_material(&scene("{ image = \"\" }").load("scene.toml")).maps.lambert, None);
-    for wrong in
-        ["{ scale = [1, 2] }", "{ image = \"a.png\", scale = [0, 1] }", "{ image = \"a.png\", scal = [1, 1] }", "3"]
-    {
-        scene(wrong).fails_at("scene.toml", "scene.toml", (5, 15), &["name of an image", "from -1e6 to 1e6"]);
+    for (wrong, column, words) in [
+        ("{ scale = [1, 2] }", 15, "`image`: the name of the picture"),
+        ("{ image = \"a.png\", scale = [0, 1] }", 42, "other than 0"),
+        ("{ image = \"a.png\", offset = [0, 1e7] }", 43, "from -1e6 to 1e6"),
+        ("{ image = \"a.png\", scal = [1, 1] }", 34, "did you mean `scale`?"),
+        ("3", 15, "the name of an image, or { image"),
+    ] {
+        scene(wrong).fails_at("scene.toml", "scene.toml", (5, column), &[words]);
     }
     scene("{ image = \"b.png\" }").fails_at("scene.toml", "scene.toml", (5, 15), &["b.png"]);
 }

@@ -276,7 +276,7 @@ fn materials_and_luminaires_that_make_no_sense() {
     toml_fails("[[luminaire]]\nkind = \"point\"\nposition = [0, 0, 0]\n", (1, 1), &["`position` and `intensity`"]);
     let mixed =
         "[[luminaire]]\nkind = \"infinite\"\ndirection = [0, 1, 0]\nirradiance = [1, 1, 1]\nposition = [0, 0, 0]\n";
-    toml_fails(mixed, (1, 1), &["`direction` and `irradiance`"]);
+    toml_fails(mixed, (5, 1), &["`position` is too much", "`direction` and `irradiance`"]);
     let zero = "[[luminaire]]\nkind = \"infinite\"\ndirection = [0, 0, 0]\nirradiance = [1, 1, 1]\n";
     toml_fails(zero, (1, 1), &["zero vector"]);
     toml_fails("[integrator]\nkind = \"path\"\nambient = [1, 1, 1]\n", (3, 11), &["simple"]);

@@ -51,12 +51,44 @@ fn inspect_lists_metallic_roughness_surfaces() {
     let output = folder.luminaire(&["inspect", "m.obj"]).output().unwrap();
     let said = String::from_utf8_lossy(&output.stdout);
     for part in [
-        "metallic-roughness: base colour (0.5 0.25 1), metallic 1, roughness 1, index 1.5; roughness map a.ppm, red",
+        "metallic-roughness: base colour (0.5 0.25 1), metallic 1, roughness 1; roughness map a.ppm, red",
         "roughness 0.25, index 1.5; transmission 1; sheen (1 1 1) of roughness 0.5",
         "m.mtl: written by Blender",
     ] {
         assert!(said.contains(part), "{part} is not in\n{said}{}", stderr(&output));
     }
+}
+
+/// Of each surface what means something for it: a metal by its name, and no map that nobody set.
+#[test]
+fn inspect_says_of_a_surface_what_counts() {
+    let folder = Folder::new();
+    folder.write("a.ppm", "P3\n1 1\n255\n128 64 32\n");
+    folder.write("m.mtl", "newmtl metal\nPr .25\nnewmtl half\nPm .5\nnewmtl own\nPm 1\nnewmtl wood\nmap_Kd a.ppm\nPr .5\nnewmtl old\nmap_Kd a.ppm\n");
+    let faces = ["metal", "half", "own", "wood", "old"].map(|name| format!("usemtl {name}\nf 1/1 2/1 3/1\n")).concat();
+    folder.write("m.obj", &format!("mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\n{faces}"));
+    let table = |name: &str, lines: &str| format!("[[material]]\nname = \"{name}\"\n{lines}\n");
+    let text = "[[object]]\nmesh = \"m.obj\"\n".to_owned()
+        + &table("metal", "conductor = \"copper\"")
+        + &table("half", "conductor = \"gold\"\nmetallic = 0.5")
+        + &table("own", "conductor = { eta = [1, 2, 3], k = [4, 5, 6] }");
+    folder.write("m.toml", &text);
+    let output = folder.luminaire(&["inspect", "m.toml"]).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stdout);
+    for part in [
+        "metallic-roughness: metallic 1, roughness 0.25; conductor copper\n",
+        "metallic-roughness: base colour (0.8 0.8 0.8), metallic 0.5, roughness 0.5, index 1.5; conductor gold\n",
+        "metallic-roughness: metallic 1, roughness 0.5; conductor of index (1 2 3), extinction (4 5 6)\n",
+        "index 1.5; base colour map a.ppm\n",
+        "  diffuse map a.ppm\n",
+    ] {
+        assert!(said.contains(part), "{part} is not in\n{said}{}", stderr(&output));
+    }
+    assert!(!said.contains("ambient map"), "{said}");
+    folder.write("m.mtl", "newmtl metal\nmap_Kd a.ppm\nmap_Ka a.ppm\nKa .5 .5 .5\n");
+    let output = folder.luminaire(&["inspect", "m.obj"]).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert!(said.contains("diffuse map a.ppm; ambient map a.ppm"), "{said}");
 }
 
 /// The bounds are those of what is seen, not those of a box that was turned with it.

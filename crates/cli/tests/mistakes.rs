@@ -225,6 +225,41 @@ fn scene_files() {
         (MATERIAL, "orm = \"a.png\"\n", &["channel = \"g\""]),
         (MATERIAL, "subsurface = 1\n", &["not modelled"]),
         (MATERIAL, "roughnes = 1\n", &["did you mean `roughness`?"]),
+        (MATERIAL, "base_colour_texture = \"a.png\"\n", &["`base_colour_map`;"]),
+        (MATERIAL, "roughness_texture = \"a.png\"\n", &["`roughness_map`;"]),
+        (MATERIAL, "clearcoat_ior = 1.5\n", &["of index 1.5", "leave it out"]),
+        (MATERIAL, "coat_tint = [1, 1, 1]\n", &["leave it out"]),
+        (MATERIAL, "clearcoat_normal_map = \"a.png\"\n", &["its normals are those of the surface"]),
+        (MATERIAL, "iridescence_thickness_minimum = 100\n", &["`iridescence_thickness = [least, greatest]`"]),
+        (MATERIAL, "normal_strength = 1\n", &["`normal_scale`"]),
+        (MATERIAL, "bump_strength = 1\n", &["`bump_scale`"]),
+        (MATERIAL, "bump_distance = 1\n", &["`bump_scale`"]),
+        (MATERIAL, "alpha_map = \"a.png\"\n", &["`opacity_map`"]),
+        (MATERIAL, "occlusion_map = \"a.png\"\n", &["not modelled"]),
+        // Within a map and a metal.
+        (
+            MATERIAL,
+            "roughness_map = { image = \"a.png\", chanel = \"g\" }\n",
+            &["`chanel` of a map", "mean `channel`?"],
+        ),
+        (MATERIAL, "roughness_map = { image = \"a.png\", channel = \"green\" }\n", &["it is called \"g\""]),
+        (MATERIAL, "roughness_map = { image = \"a.png\", channel = \"G\" }\n", &["write \"g\""]),
+        (MATERIAL, "roughness_map = { file = \"a.png\" }\n", &["`file` of a map", "named by `image`"]),
+        (MATERIAL, "roughness_map = { channel = \"g\" }\n", &["`image`", "the name of the picture"]),
+        (MATERIAL, "roughness_map = { image = \"a.png\", scale = 2 }\n", &["two numbers [x, y]"]),
+        (MATERIAL, "roughness_map = { image = \"a.png\", scale = [0, 2] }\n", &["other than 0"]),
+        (MATERIAL, "roughness_map = { image = \"a.png\", offset = [1, 2, 3] }\n", &["two numbers, found 3"]),
+        (MATERIAL, "roughness_map = 3\n", &["the name of an image, or { image ="]),
+        (MATERIAL, "conductor = { eta = [1, 1, 1] }\n", &["`k`", "extinction coefficient"]),
+        (MATERIAL, "conductor = { ior = [1, 1, 1] }\n", &["`ior` of a conductor", "is `eta`"]),
+        (MATERIAL, "conductor = { eta = [1, 1, 1], k = [-1, 0, 0] }\n", &["negative"]),
+        (MATERIAL, "conductor = { eta = [1, 1, 1], k = 2 }\n", &["[2, 2, 2]"]),
+        (MATERIAL, "conductor = 3\n", &["the name of a metal, or { eta ="]),
+        (MATERIAL, "iridescence_thickness = [1, 2, 3]\n", &["two numbers, found 3"]),
+        (MATERIAL, "iridescence_thickness = [1, -2]\n", &["nanometres of at least 0"]),
+        (MATERIAL, "iridescence_thickness = \"thin\"\n", &["nanometres, or two of them"]),
+        (MATERIAL, "transmission = \"1\"\n", &["without quotes: 1"]),
+        (MATERIAL, "model = 1\n", &["a name between quotes"]),
         (MATERIAL, "conductor = \"Au\"\n", &["it is called \"gold\""]),
         (MATERIAL, "conductor = \"Gold\"\n", &["write \"gold\""]),
         (MATERIAL, "model = \"pbr\"\n", &["\"metallic-roughness\""]),
@@ -250,6 +285,9 @@ fn scene_files() {
         ("", "[[luminaire]]\nkind = \"ies\"\n", &["`profile`"]),
         ("", "[[luminaire]]\nkind = \"sun\"\n", &["\"infinite\""]),
         ("", "[[luminaire]]\nkind = \"envmap\"\n", &["[environment]"]),
+        ("", "[[luminaire]]\nkind = 1\n", &["a name between quotes"]),
+        ("", "[[luminaire]]\nposition = [0, 1, 0]\n", &["`kind`", "\"spot\""]),
+        ("", "[[luminaire]]\nkind = \"spot\"\nspot_angle = 30\n", &["`outer_angle`"]),
         ("", "[[luminaire]]\nkind = \"Point\"\n", &["write \"point\""]),
         ("", "[[luminaire]]\nkind = \"point\"\nposition = [0, 1, 0]\npower = 60\n", &["`intensity`", "4 pi"]),
         (SENSOR, "fov = 45\nkind = \"thinlens\"\n", &["`aperture`"]),
@@ -276,6 +314,7 @@ fn scene_files() {
         (MATERIAL, "diffuse = [-1, 0, 0]\n", &["negative"]),
         ("", "[[object]]\nmesh = \"C:\\models\\good.obj\"\n", &["'single quotes'"]),
         ("", "[[object]]\nmesh = '.\\good.obj'\n", &["./good.obj", "with /"]),
+        ("", "[[object]]\nmesh = \"\"\n", &["empty name", "an OBJ file"]),
         ("", "[[object]]\nmesh = \"goood.obj\"\n", &["there is good.obj"]),
         ("", "[[object]]\nmesh = \"mesh.obj\"\n", &["there is Mesh.obj"]),
         ("", "[[object]]\nmesh = good.obj\n", &["quoted"]),
@@ -306,6 +345,26 @@ fn angles_in_radians_are_warned_of() {
     let turned = said(format!("{SENSOR}fov = 45\n{OBJECT}rotate = [0, 1.5708, 0]\n"));
     assert!(turned.contains("angle.toml:5: ") && turned.contains("if radians are meant, write [0, 90, 0]"), "{turned}");
     assert!(!said(format!("{SENSOR}fov = 45\n{OBJECT}rotate = [0, 90, 0]\n")).contains("radians"));
+    let lamp = format!("{OBJECT}material = \"lamp\"\n{MATERIAL}anisotropy = 0.5\n");
+    for (text, words) in [
+        (
+            format!("{lamp}anisotropy_rotation = 1.5708\n"),
+            "`anisotropy_rotation` is in degrees; if radians are meant, write 90",
+        ),
+        (
+            format!("[environment]\nsky = \"studio\"\nrotate = 1.5708\n{OBJECT}"),
+            "`rotate` is in degrees; if radians are meant, write 90",
+        ),
+        (format!("{OBJECT}smooth = 0.698\n"), "if radians are meant, write 40"),
+        (
+            format!("{SENSOR}fov = 45\naperture = 0.1\nblades = 6\nblade_rotation = 0.5236\n{OBJECT}"),
+            "`blade_rotation` is in degrees; if radians are meant, write 30",
+        ),
+    ] {
+        let found = said(text.clone());
+        assert!(found.contains("angle.toml:") && found.contains(words), "{text}: {found}");
+    }
+    assert!(!said(format!("{lamp}anisotropy_rotation = 90\n")).contains("radians"));
     // Four rows as others write them are three.
     let matrix = "matrix = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]\n";
     assert!(!said(format!("{SENSOR}fov = 45\n{OBJECT}{matrix}")).contains("error"));

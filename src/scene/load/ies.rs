@@ -73,7 +73,10 @@ pub(super) fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Profile> {
         _ if further != 1.0 => {
             warn(
                 numbers.line,
-                format!("{further} behind the ballast factor, where LM-63 of 1995 and later wants 1, is left out"),
+                format!(
+                    "{} behind the ballast factor, where LM-63 of 1995 and later wants 1, is left out",
+                    digits(further)
+                ),
             );
             1.0
         }
@@ -90,11 +93,15 @@ pub(super) fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Profile> {
         for _ in 0..vertical_count {
             let candela = numbers.next("a candela value")?;
             if candela < 0.0 {
-                return Err(numbers.error(format!("expected candelas of at least 0, found {candela}")));
+                return Err(numbers.error(format!("expected candelas of at least 0, found {}", digits(candela))));
             }
             let scaled = (scale * candela) as f32;
             if !scaled.is_finite() {
-                return Err(numbers.error(format!("{candela} candelas, times {scale}, are too many")));
+                return Err(numbers.error(format!(
+                    "{} candelas, times {}, are too many",
+                    digits(candela),
+                    digits(scale)
+                )));
             }
             row.push(scaled);
         }
@@ -252,7 +259,11 @@ impl<'a> Numbers<'a> {
 
     fn above_0(&mut self, what: &str) -> Result<f64> {
         let number = self.next(what)?;
-        if number > 0.0 { Ok(number) } else { Err(self.error(format!("expected {what}, above 0, found {number}"))) }
+        if number > 0.0 {
+            Ok(number)
+        } else {
+            Err(self.error(format!("expected {what}, above 0, found {}", digits(number))))
+        }
     }
 
     fn count(&mut self, what: &str, least: u32) -> Result<u32> {
@@ -261,7 +272,7 @@ impl<'a> Numbers<'a> {
         if whole {
             Ok(number as u32)
         } else {
-            Err(self.error(format!("expected {what}, at least {least}, found {number}")))
+            Err(self.error(format!("expected {what}, at least {least}, found {}", digits(number))))
         }
     }
 
@@ -272,7 +283,7 @@ impl<'a> Numbers<'a> {
             1.0 => return Ok(()),
             2.0 => "type B (2), of floodlights",
             3.0 => "type A (3), of headlights",
-            _ => return Err(self.error(format!("expected the photometric type, 1, 2 or 3, found {number}"))),
+            _ => return Err(self.error(format!("expected the photometric type, 1, 2 or 3, found {}", digits(number)))),
         };
         Err(self.error(format!("the photometric type is {what}, which is not read: convert the file to type C (1)")))
     }
@@ -283,7 +294,9 @@ impl<'a> Numbers<'a> {
         for _ in 0..count {
             let angle = self.next(&format!("a {which} angle"))?;
             if !(0.0..=most).contains(&angle) {
-                return Err(self.error(format!("expected a {which} angle from 0 to {most} degrees, found {angle}")));
+                return Err(
+                    self.error(format!("expected a {which} angle from 0 to {most} degrees, found {}", digits(angle)))
+                );
             }
             if let Some(last) = angles.last().filter(|last| angle as f32 <= **last) {
                 return Err(
@@ -294,4 +307,9 @@ impl<'a> Numbers<'a> {
         }
         Ok(angles)
     }
+}
+/// A number for a message: one that would have many zeros by its exponent.
+fn digits(number: f64) -> String {
+    let short = number == 0.0 || (1e-5..1e9).contains(&number.abs());
+    if short { number.to_string() } else { format!("{number:e}") }
 }

@@ -6,7 +6,7 @@ use super::text_file::shortened;
 use super::texture::Textures;
 use super::{ies, mtl, named_file, obj};
 use crate::Result;
-use crate::scene::{Material, Mesh, Object, Profile, Texture};
+use crate::scene::{Material, Mesh, Object, Physical, Profile, Texture};
 use glam::{DAffine3, DVec3};
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -192,6 +192,7 @@ impl Loader {
                 // The fallback is always there: what changes it changes something only where it is seen.
                 known[change] |= !fallbacks.contains(&Some(index as u32)) || shown[index];
             }
+            draft.settle();
         }
         for (change, known) in self.overrides.iter().zip(known) {
             if !known {
@@ -249,20 +250,27 @@ impl Loader {
         }
     }
 
-    /// Maps need texture coordinates.
+    /// Maps and brushing need texture coordinates.
     fn warn_of_missing_uvs(&mut self, objects: &[Object], materials: &[Material]) {
         let mut said = HashSet::new();
         let mut seen = HashSet::new();
         for object in objects.iter().filter(|object| seen.insert((object.mesh, object.material))) {
             for WithoutUv { material, at } in &self.without_uv[object.mesh as usize] {
                 let material = &materials[object.material.unwrap_or(*material) as usize];
-                if material.has_maps() && said.insert((&material.name, at)) {
-                    let relief = if material.bends_normal() { ", and no normal is bent" } else { "" };
-                    self.warnings.push(format!(
-                        "{at}: faces without texture coordinates, but material `{}` has maps; (0, 0) is used{relief}",
-                        material.name
-                    ));
+                let brushed = material.physical.as_ref().is_some_and(Physical::needs_tangents);
+                if !(material.has_maps() || brushed) || !said.insert((&material.name, at)) {
+                    continue;
                 }
+                let maps = "has maps; (0, 0) is used";
+                let relief = ", and no normal is bent";
+                let grain = "is anisotropic: its grain lies anyhow, as no tangent says which way";
+                let said: String = match (material.has_maps(), material.bends_normal(), brushed) {
+                    (false, ..) => grain.into(),
+                    (true, bent, false) => format!("{maps}{}", if bent { relief } else { "" }),
+                    (true, bent, true) => format!("{maps}{}; it {grain}", if bent { relief } else { "" }),
+                };
+                let name = &material.name;
+                self.warnings.push(format!("{at}: faces without texture coordinates, but material `{name}` {said}"));
             }
         }
     }

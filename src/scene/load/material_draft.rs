@@ -1,8 +1,9 @@
 //! A material while it is still being read: what nobody has said yet is `None`.
 
 pub(super) use super::map_draft::MapDraft;
-use super::physical_draft::{PhysicalDraft, PhysicalDraftMaps, bounded};
-use super::texture::{Channel, MapFile, Relief, Textures};
+use super::mapped_number::{Mapped, Number};
+use super::physical_draft::{MetalColour, PhysicalDraft, PhysicalDraftMaps, bounded};
+use super::texture::{Channel, Looks, MapFile, Relief, Textures};
 use crate::scene::{BumpMap, Maps, Material, NormalMap};
 use glam::Vec3;
 use std::ops::RangeInclusive;
@@ -19,6 +20,9 @@ pub(super) const DEFAULT_ETA: f32 = 1.5;
 pub(super) const ETAS: RangeInclusive<f32> = 0.01..=100.0;
 /// The largest exponent: its lobe is a hundredth of a degree wide, which in a picture looks like a mirror.
 pub(super) const LARGEST_EXPONENT: f32 = 1e8;
+
+/// The `Ks` that exporters write who mean nothing by it.
+pub(super) const UNSAID_KS: Vec3 = Vec3::splat(0.5);
 
 /// What MTL and scene file say about a material.
 #[derive(Debug, Clone, Default)]
@@ -53,6 +57,8 @@ pub(super) struct Draft {
     pub normal_scale: Option<f32>,
     /// Length of a height of 1.
     pub bump_scale: Option<f32>,
+    /// Whether an MTL file names the map of normals.
+    pub normal_word: bool,
     /// What the map of heights may be besides.
     pub bump_word: BumpWord,
     /// The maps of all these.
@@ -125,6 +131,71 @@ impl Draft {
         bare
     }
 
+    /// Every number and colour that has a map, those that both kinds of surface have first.
+    fn mapped(&mut self) -> Vec<Mapped<'_>> {
+        let maps = &self.maps;
+        let one = |key, map_key, number, map| Mapped { key, map_key, number: Number::One(number), map };
+        let colour = |key, map_key, colour, map| Mapped { key, map_key, number: Number::Colour(colour), map };
+        let (base, base_map) =
+            if self.physical.is_some() { ("base_colour", "base_colour_map") } else { ("diffuse", "diffuse_map") };
+        let mut all = vec![
+            colour(base, base_map, &mut self.diffuse, &maps.diffuse),
+            colour("emission", "emission_map", &mut self.emission, &maps.emission),
+            colour("ambient", "ambient_map", &mut self.ambient, &maps.ambient),
+            colour("glossy", "glossy_map", &mut self.glossy, &maps.glossy),
+            one("opacity", "opacity_map", &mut self.opacity, &maps.opacity),
+            one("normal_scale", "normal_map", &mut self.normal_scale, &maps.normal),
+            one("bump_scale", "bump_map", &mut self.bump_scale, &maps.bump),
+        ];
+        all.extend(self.physical.iter_mut().flat_map(|physical| physical.mapped()));
+        all
+    }
+
+    /// What is to be said of maps of a scene file's table that do nothing, because the number in the same table is 0. (A scale of 0 is another word for no map.)
+    pub(super) fn idle_maps(&mut self) -> Vec<String> {
+        let name = self.name.clone();
+        let mapped = self.mapped();
+        let idle = mapped.iter().filter(|mapped| !mapped.key.ends_with("_scale")).filter_map(|mapped| {
+            let Mapped { key, map_key, .. } = mapped;
+            let at = &mapped.idle_map()?.at;
+            Some(format!("{at}: material `{name}`: `{map_key}` does nothing where `{key}` is 0; leave `{key}` out"))
+        });
+        idle.collect()
+    }
+
+    /// A number of 0 over which `other` names a map is missing: exporters write 0 for everything, and the map would do nothing.
+    fn wake(&mut self, other: &Draft) {
+        let name = self.name.clone();
+        let mut other = other.clone();
+        let wake = |(own, said): (&mut Mapped, &Mapped)| {
+            let map = own.wake(said)?;
+            let Mapped { key, map_key, .. } = own;
+            Some(format!(
+                "{}: material `{name}`: the MTL file has 0 for `{key}`, with which `{map_key}` would do nothing; 1 is used, unless `{key}` says otherwise",
+                map.at
+            ))
+        };
+        let notes: Vec<String> = self.mapped().iter_mut().zip(&other.mapped()).filter_map(wake).collect();
+        self.notes.extend(notes);
+    }
+
+    /// Decides what depends on all that is said: once nothing more is laid over it. A metal without another colour has that of its reflection.
+    pub(super) fn settle(&mut self) {
+        let Some(physical) = &mut self.physical else { return };
+        let Some(MetalColour { colour, map, file }) = physical.metal_colour.take() else { return };
+        let coloured = self.diffuse.is_some_and(|base| base != Vec3::ZERO) || self.maps.diffuse.file().is_some();
+        if coloured || physical.conductor.is_some() {
+            return;
+        }
+        if physical.is_metal() {
+            (self.diffuse, self.maps.diffuse) = (colour, map);
+            self.shared.push((file, "Kd is black, and Ks taken as the colour of the metal (base colour)".into()));
+        } else if map.file().is_some() || colour.is_some_and(|ks| ks != UNSAID_KS) {
+            let said = "Kd is black, and Ks ignored, which would be the colour of a metal: with Pm 1 it is one";
+            self.shared.push((file, said.into()));
+        }
+    }
+
     /// Replaces what `other` states. What only one kind of surface has makes it one of that kind.
     pub(super) fn overlay(&mut self, other: &Draft) {
         match (&other.physical, &other.blinn_phong) {
@@ -146,8 +217,15 @@ impl Draft {
             }
             _ => {}
         }
+        self.wake(other);
+        self.notes.extend(other.notes.iter().cloned());
         if let (Some(physical), Some(other)) = (&mut self.physical, &other.physical) {
             physical.overlay(other);
+        }
+        if let Some(physical) = &mut self.physical
+            && (other.diffuse.is_some() || other.maps.diffuse.file().is_some())
+        {
+            physical.metal_colour = None;
         }
         self.ambient = other.ambient.or(self.ambient);
         self.diffuse = other.diffuse.or(self.diffuse);
@@ -163,6 +241,9 @@ impl Draft {
         self.opacity = other.opacity.or(self.opacity);
         self.normal_scale = other.normal_scale.or(self.normal_scale);
         self.bump_scale = other.bump_scale.or(self.bump_scale);
+        if other.maps.normal.file().is_some() {
+            self.normal_word = other.normal_word;
+        }
         self.maps.normal.overlay(&other.maps.normal);
         if !matches!(other.maps.bump, MapDraft::Unstated) {
             // Whoever names a map by this key means what it says.
@@ -178,7 +259,7 @@ impl Draft {
 
     /// Fills in the defaults, loads the maps and scales down what would create energy; each such decision is a warning.
     ///
-    /// A missing number whose map is given is 1. Without a map, a missing diffuse albedo is 0.8 (1 under the colours of vertices), but 0 where the material is
+    /// A missing number whose map is given is 1, unless the map cannot be used. Without a map, a missing diffuse albedo is 0.8 (1 under the colours of vertices), but 0 where the material is
     /// described by another albedo or an emission alone; a missing ambient albedo is the diffuse one with its map.
     pub(super) fn finish(&self, textures: &mut Textures, warnings: &mut Vec<String>) -> Material {
         let name = &self.name;
@@ -193,14 +274,17 @@ impl Draft {
         // Light that goes through a surface is also reflected by it, unless somebody says otherwise.
         let entered = if transmission == Vec3::ZERO { Vec3::ZERO } else { Vec3::ONE };
         let reflection = self.reflection.unwrap_or(entered);
-        // A zero describes nothing: exporters write `Ks 0 0 0` and `Ke 0 0 0` for everything.
-        let described = [glossy, emission, reflection, transmission].iter().any(|colour| *colour != Vec3::ZERO);
-        let lambert = self.diffuse.unwrap_or(match (self.maps.diffuse.file(), described) {
-            (Some(_), _) => Vec3::ONE,
-            (None, true) => Vec3::ZERO,
-            (None, false) if self.coloured => Vec3::ONE,
-            (None, false) => DEFAULT_LAMBERT,
-        });
+        let lambert_beside = |glossy: Vec3| {
+            // A zero describes nothing: exporters write `Ks 0 0 0` and `Ke 0 0 0` for everything.
+            let described = [glossy, emission, reflection, transmission].iter().any(|colour| *colour != Vec3::ZERO);
+            self.diffuse.unwrap_or(match (self.maps.diffuse.file(), described) {
+                (Some(_), _) => Vec3::ONE,
+                (None, true) => Vec3::ZERO,
+                (None, false) if self.coloured => Vec3::ONE,
+                (None, false) => DEFAULT_LAMBERT,
+            })
+        };
+        let lambert = lambert_beside(glossy);
         let impulses = reflection != Vec3::ZERO || transmission != Vec3::ZERO;
         let without = [
             ("eta", self.eta.is_some() && !impulses, "`reflection` or `transmission`"),
@@ -236,10 +320,6 @@ impl Draft {
             bump_map: None,
             physical: None,
         };
-        if material.glossy != Vec3::ZERO && self.exponent.is_none() {
-            warnings
-                .push(format!("material `{name}` is glossy but states no exponent (Ns); {DEFAULT_EXPONENT} is used"));
-        }
         if material.transmission != Vec3::ZERO && material.eta.is_none() {
             material.eta = Some(DEFAULT_ETA);
             warnings.push(format!(
@@ -247,6 +327,17 @@ impl Draft {
             ));
         }
         self.load_maps(&mut material, textures, warnings);
+        if self.glossy.is_none() && self.maps.glossy.file().is_some() && material.maps.glossy.is_none() {
+            warnings.push(format!("material `{name}`: without the map that cannot be used it is not glossy"));
+            (material.glossy, material.lambert) = (Vec3::ZERO, lambert_beside(Vec3::ZERO));
+            if self.ambient.is_none() && self.maps.ambient.file().is_none() {
+                material.ambient = material.lambert;
+            }
+        }
+        if material.glossy != Vec3::ZERO && self.exponent.is_none() {
+            warnings
+                .push(format!("material `{name}` is glossy but states no exponent (Ns); {DEFAULT_EXPONENT} is used"));
+        }
         self.load_relief(&mut material, textures, warnings);
         if material.opacity == 0.0 {
             warnings.push(format!("material `{name}` has opacity 0 (d): its surfaces cannot be seen"));
@@ -269,13 +360,26 @@ impl Draft {
         let scale = self.normal_scale.unwrap_or(1.0);
         if let Some(map) = self.maps.normal.file().filter(|_| scale != 0.0) {
             material.normal_map = textures.normals(map, warnings).map(|texture| NormalMap { texture, scale });
+            let looks = material.normal_map.map(|map| textures.looks(map.texture));
+            let (key, bump) = if self.normal_word { ("norm", "map_Bump") } else { ("normal_map", "bump_map") };
+            let looks = match looks {
+                Some(Looks::Grey) => Some(format!("is grey and looks like heights, which is `{bump}`")),
+                Some(Looks::NoNormals) => Some("looks like no normals, as most of them are not of unit length".into()),
+                _ => None,
+            };
+            if let Some(looks) = looks {
+                warnings.push(format!(
+                    "{}: material `{name}`: the image of `{key}` {looks}; it is taken as normals",
+                    map.at
+                ));
+            }
         }
         let scale = self.bump_scale.unwrap_or(1.0);
         let Some(map) = self.maps.bump.file().filter(|_| scale != 0.0) else { return };
         match textures.relief(map, self.bump_word != BumpWord::Key, warnings) {
             None => {}
             Some(Relief::Heights(texture)) => {
-                if textures.shows_normals(texture) {
+                if textures.looks(texture) == Looks::Normals {
                     warnings.push(format!(
                         "{}: material `{name}`: the image of `bump_map` looks like a map of normals, which is `normal_map`; it is taken as heights",
                         map.at
@@ -329,6 +433,9 @@ impl Draft {
         };
         if self.one_sided.is_some() && material.emission == Vec3::ZERO {
             warnings.push(format!("material `{name}`: `one_sided` does nothing without `emission`"));
+        }
+        if material.emission != Vec3::ZERO && surface.clearcoat > 0.0 {
+            warnings.push(format!("material `{name}`: its coat does not dim what it emits"));
         }
         self.load_maps(&mut material, textures, warnings);
         self.load_relief(&mut material, textures, warnings);

@@ -20,8 +20,8 @@ pub(super) fn by_name(name: &str) -> Option<[Vec3; 2]> {
     METALS.iter().find(|(metal, _)| *metal == name).map(|(_, numbers)| numbers.map(Vec3::from))
 }
 
-/// The name of the metal with these numbers.
-pub(super) fn name_of(numbers: [Vec3; 2]) -> Option<&'static str> {
+/// The name that scene files have for the metal with this index of refraction and this extinction coefficient, if it is one of those that have a name.
+pub fn metal_name(numbers: [Vec3; 2]) -> Option<&'static str> {
     METALS.iter().find(|(_, metal)| metal.map(Vec3::from) == numbers).map(|(name, _)| *name)
 }
 
@@ -48,7 +48,7 @@ mod tests {
             let (less, more) = (eta - 1.0, eta + 1.0);
             let reflectance = (less * less + k * k) / (more * more + k * k);
             assert!((reflectance - Vec3::from(colour)).abs().max_element() < 0.13, "{name}: {reflectance}");
-            assert_eq!(name_of([eta, k]), Some(name));
+            assert_eq!(metal_name([eta, k]), Some(name));
         }
         assert_eq!(names().count(), METALS.len());
     }

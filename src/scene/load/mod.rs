@@ -13,6 +13,7 @@ mod ies;
 mod lamplight;
 mod loader;
 mod map_draft;
+mod mapped_number;
 mod material_draft;
 mod metals;
 mod mtl;
@@ -31,6 +32,7 @@ mod toml;
 
 pub use camera::use_camera;
 pub use choices::{Choices, Sky, Up};
+pub use metals::metal_name;
 pub use scene_file::{SceneFile, scene_file};
 
 use crate::scene::Scene;

@@ -5,8 +5,8 @@ use std::path::Path;
 /// The one of `names` that is the most like `word`; none if none is like it.
 pub(super) fn near_name<'a>(word: &str, names: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let length = word.chars().count();
-    // One slip in a word of three letters, two in six; an added or left out part counts as one slip a letter.
-    let most = 1.max(length / 3);
+    // One slip in a word of three letters, two in six; an added or left out part counts as one slip a letter. Any two single letters are one slip apart.
+    let most = if length < 2 { 0 } else { 1.max(length / 3) };
     let slips = |name: &str| strsim::osa_distance(&word.to_lowercase(), &name.to_lowercase());
     let begins = |name: &str| length >= 4 && (name.starts_with(word) || word.starts_with(name) && name.len() >= 4);
     names.map(|name| (slips(name), name)).filter(|(slips, name)| *slips <= most || begins(name)).min().map(|(_, n)| n)

@@ -1,6 +1,7 @@
 //! What makes a metallic-roughness surface of a material, while it is still being read: what nobody has said yet is `None`.
 
 use super::map_draft::MapDraft;
+use super::mapped_number::{Mapped, Number};
 use super::texture::{MapFile, Textures};
 use crate::scene::{ChannelMap, Physical, PhysicalMaps};
 use glam::Vec3;
@@ -29,6 +30,19 @@ pub(super) struct PhysicalDraft {
     pub dispersion: Option<f32>,
     /// The maps of all these.
     pub maps: PhysicalDraftMaps,
+    /// The base colour that it has if it is a metal.
+    pub metal_colour: Option<MetalColour>,
+}
+
+/// What an MTL file, which gives no other colour, says of the reflection (`Ks`): so metals are written.
+#[derive(Debug, Clone)]
+pub(super) struct MetalColour {
+    /// `Ks`.
+    pub colour: Option<Vec3>,
+    /// `map_Ks`.
+    pub map: MapDraft,
+    /// The file.
+    pub file: String,
 }
 
 /// The maps of a [`PhysicalDraft`].
@@ -72,8 +86,50 @@ impl PhysicalDraftMaps {
 }
 
 impl PhysicalDraft {
-    /// Replaces what `other` states.
+    /// Its numbers and colours that have a map.
+    pub(super) fn mapped(&mut self) -> [Mapped<'_>; 11] {
+        let maps = &self.maps;
+        let one = |key, map_key, number, map| Mapped { key, map_key, number: Number::One(number), map };
+        let colour = |key, map_key, colour, map| Mapped { key, map_key, number: Number::Colour(colour), map };
+        [
+            one("metallic", "metallic_map", &mut self.metallic, &maps.metallic),
+            one("roughness", "roughness_map", &mut self.roughness, &maps.roughness),
+            one("anisotropy", "anisotropy_map", &mut self.anisotropy, &maps.anisotropy),
+            one("specular", "specular_map", &mut self.specular, &maps.specular),
+            colour("specular_colour", "specular_colour_map", &mut self.specular_color, &maps.specular_color),
+            one("transmission", "transmission_map", &mut self.transmission, &maps.transmission),
+            one("clearcoat", "clearcoat_map", &mut self.clearcoat, &maps.clearcoat),
+            one(
+                "clearcoat_roughness",
+                "clearcoat_roughness_map",
+                &mut self.clearcoat_roughness,
+                &maps.clearcoat_roughness,
+            ),
+            colour("sheen_colour", "sheen_colour_map", &mut self.sheen_color, &maps.sheen_color),
+            one("sheen_roughness", "sheen_roughness_map", &mut self.sheen_roughness, &maps.sheen_roughness),
+            one("iridescence", "iridescence_map", &mut self.iridescence, &maps.iridescence),
+        ]
+    }
+
+    /// Whether some of it is said to be nothing but metal.
+    pub(super) fn is_metal(&self) -> bool {
+        // A map that is not there says nothing.
+        let map = self.maps.metallic.file().is_some_and(|map| map.path().is_some());
+        let missing = if map || self.conductor.is_some() { 1.0 } else { 0.0 };
+        let metallic = self.metallic.unwrap_or(missing);
+        metallic == 1.0 || map && metallic > 0.0
+    }
+
+    /// Replaces what `other` states. What it makes a metal, or gives a colour of its reflection, is not left without either by a number of before.
     pub(super) fn overlay(&mut self, other: &PhysicalDraft) {
+        if other.conductor.is_some() {
+            // A map goes on saying where.
+            self.metallic = None;
+        }
+        let tinted = other.specular_color.is_some_and(|colour| colour != Vec3::ZERO);
+        if self.specular == Some(0.0) && (tinted || other.maps.specular_color.file().is_some()) {
+            self.specular = None;
+        }
         self.metallic = other.metallic.or(self.metallic);
         self.roughness = other.roughness.or(self.roughness);
         self.anisotropy = other.anisotropy.or(self.anisotropy);
@@ -98,7 +154,7 @@ impl PhysicalDraft {
 
     /// Fills in the defaults and loads the maps; what is guessed, does nothing or is not modelled is a warning. The base colour is left white, without a map.
     ///
-    /// A missing number whose map is given is 1. A `conductor` is a metal unless `metallic` says otherwise.
+    /// A missing number whose map is given is 1, unless the map cannot be used. A `conductor` is a metal unless `metallic` says otherwise.
     pub(super) fn finish(
         &self,
         name: &str,
@@ -139,6 +195,8 @@ impl PhysicalDraft {
             dispersion: self.dispersion.unwrap_or(default.dispersion),
             ..default
         };
+        surface.maps = self.load_maps(&surface, textures, warnings);
+        self.without_lost_maps(name, metal, &mut surface, warnings);
         if surface.ior == 0.0 && surface.transmission > 0.0 {
             surface.transmission = 0.0;
             warnings.push(format!(
@@ -146,7 +204,6 @@ impl PhysicalDraft {
             ));
         }
         self.warn_of_idle(name, thin, &surface, warnings);
-        surface.maps = self.load_maps(&surface, textures, warnings);
         surface.sheen_color =
             bounded(surface.sheen_color, surface.maps.sheen_color, "sheen colour", name, textures, warnings);
         let missing = surface.not_modelled();
@@ -156,9 +213,56 @@ impl PhysicalDraft {
         surface
     }
 
+    /// Numbers that would be 1 beside a map which cannot be used are what they are without one; `metal` is the share of metal then.
+    fn without_lost_maps(&self, name: &str, metal: f32, surface: &mut Physical, warnings: &mut Vec<String>) {
+        let (default, maps, loaded) = (Physical::default(), &self.maps, surface.maps);
+        let (coat, sheen) = (surface.clearcoat > 0.0, surface.sheen_color != Vec3::ZERO);
+        let lost =
+            |stated: Option<f32>, map: &MapDraft, there: bool| stated.is_none() && map.file().is_some() && !there;
+        let coat_roughness =
+            lost(self.clearcoat_roughness, &maps.clearcoat_roughness, loaded.clearcoat_roughness.is_some());
+        let sheen_roughness = lost(self.sheen_roughness, &maps.sheen_roughness, loaded.sheen_roughness.is_some());
+        let numbers = [
+            ("metallic", lost(self.metallic, &maps.metallic, loaded.metallic.is_some())),
+            ("roughness", lost(self.roughness, &maps.roughness, loaded.roughness.is_some())),
+            ("anisotropy", lost(self.anisotropy, &maps.anisotropy, loaded.anisotropy.is_some())),
+            ("transmission", lost(self.transmission, &maps.transmission, loaded.transmission.is_some())),
+            ("clearcoat", lost(self.clearcoat, &maps.clearcoat, loaded.clearcoat.is_some())),
+            ("clearcoat_roughness", coat && coat_roughness),
+            ("sheen_roughness", sheen && sheen_roughness),
+            ("iridescence", lost(self.iridescence, &maps.iridescence, loaded.iridescence.is_some())),
+        ];
+        let places = [
+            (&mut surface.metallic, metal),
+            (&mut surface.roughness, default.roughness),
+            (&mut surface.anisotropy, default.anisotropy),
+            (&mut surface.transmission, default.transmission),
+            (&mut surface.clearcoat, default.clearcoat),
+            (&mut surface.clearcoat_roughness, default.clearcoat_roughness),
+            (&mut surface.sheen_roughness, default.sheen_roughness),
+            (&mut surface.iridescence, default.iridescence),
+        ];
+        let mut said = Vec::new();
+        for ((key, lost), (number, default)) in numbers.into_iter().zip(places) {
+            if lost {
+                *number = default;
+                said.push(format!("`{key}` is {default}"));
+            }
+        }
+        if lost(self.sheen_color.map(|colour| colour.x), &maps.sheen_color, loaded.sheen_color.is_some()) {
+            surface.sheen_color = default.sheen_color;
+            said.push("`sheen_colour` is black".into());
+        }
+        if !said.is_empty() {
+            let said = said.join(", ");
+            warnings
+                .push(format!("material `{name}`: without the map that cannot be used {said}, as if none was named"));
+        }
+    }
+
     /// Warns of what is stated and does nothing.
     fn warn_of_idle(&self, name: &str, thin: bool, surface: &Physical, warnings: &mut Vec<String>) {
-        let metal = surface.metallic == 1.0 && self.maps.metallic.file().is_none();
+        let metal = surface.metallic == 1.0 && surface.maps.metallic.is_none();
         let transmits = surface.transmission > 0.0 && !metal;
         let film = self.iridescence_ior.is_some()
             || self.iridescence_thickness.is_some()
@@ -166,7 +270,10 @@ impl PhysicalDraft {
         let coat_roughness = self.clearcoat_roughness.is_some() || self.maps.clearcoat_roughness.file().is_some();
         let sheen_roughness = self.sheen_roughness.is_some() || self.maps.sheen_roughness.file().is_some();
         let depth = self.attenuation_distance.is_some() || self.attenuation_color.is_some();
+        let tinted_reflection = self.specular_color.is_some() || self.maps.specular_color.file().is_some();
         let tinted = self.attenuation_color.is_some_and(|colour| colour != Vec3::ONE);
+        // Of a map that cannot be used enough is said.
+        let none = |number: f32, map: &MapDraft| number == 0.0 && map.file().is_none();
         let idle = [
             (surface.transmission > 0.0 && metal, "`transmission`", "where `metallic` is 1"),
             (thin && !transmits, "`thin`", "without `transmission`"),
@@ -175,9 +282,22 @@ impl PhysicalDraft {
             (tinted && self.attenuation_distance.is_none(), "`attenuation_colour`", "without `attenuation_distance`"),
             (surface.dispersion > 0.0 && (!transmits || thin), "`dispersion`", "without a body that transmits"),
             (surface.conductor.is_some() && surface.metallic == 0.0, "`conductor`", "where `metallic` is 0"),
-            (coat_roughness && surface.clearcoat == 0.0, "`clearcoat_roughness`", "without `clearcoat`"),
-            (sheen_roughness && surface.sheen_color == Vec3::ZERO, "`sheen_roughness`", "without `sheen_colour`"),
-            (film && surface.iridescence == 0.0, "the film of `iridescence`", "without `iridescence`"),
+            (tinted_reflection && surface.specular == 0.0, "`specular_colour`", "where `specular` is 0"),
+            (
+                coat_roughness && none(surface.clearcoat, &self.maps.clearcoat),
+                "`clearcoat_roughness`",
+                "without `clearcoat`",
+            ),
+            (
+                sheen_roughness && none(surface.sheen_color.max_element(), &self.maps.sheen_color),
+                "`sheen_roughness`",
+                "without `sheen_colour`",
+            ),
+            (
+                film && none(surface.iridescence, &self.maps.iridescence),
+                "the film of `iridescence`",
+                "without `iridescence`",
+            ),
             (
                 self.anisotropy_rotation.is_some() && surface.anisotropy == 0.0,
                 "`anisotropy_rotation`",

@@ -16,10 +16,15 @@ struct Faults {
     opacity: usize,
 }
 
-/// What is changed in colours that are kept as half floats, in words that can follow the file's name; `range` makes of each number what counts. Whole
-/// numbers that are sRGB can have no fault.
-pub(super) fn of_colours(image: &ImageFile, straight: bool, range: impl Fn(f32) -> f32 + Send + Sync) -> Vec<String> {
-    if !image.is_unbounded() {
+/// What is changed in colours that are kept as half floats, in words that can follow the file's name; `range` makes of each number what counts, which may be
+/// another one if it is `changed`. Whole numbers that are sRGB can have no fault otherwise.
+pub(super) fn of_colours(
+    image: &ImageFile,
+    straight: bool,
+    changed: bool,
+    range: impl Fn(f32) -> f32 + Send + Sync,
+) -> Vec<String> {
+    if !image.is_unbounded() && !changed {
         return Vec::new();
     }
     let faults = |texel: usize| {
@@ -35,16 +40,20 @@ pub(super) fn of_colours(image: &ImageFile, straight: bool, range: impl Fn(f32) 
             opacity: usize::from(straight && !is_opacity(alpha)),
         }
     };
-    Faults::sum(image, faults).in_words(image)
+    Faults::sum(image, faults).in_words(image, changed)
 }
 
 /// The same for opacities.
-pub(super) fn of_opacities(image: &ImageFile, opacity: impl Fn(usize) -> f32 + Send + Sync) -> Vec<String> {
-    if !image.is_float() {
+pub(super) fn of_opacities(
+    image: &ImageFile,
+    changed: bool,
+    opacity: impl Fn(usize) -> f32 + Send + Sync,
+) -> Vec<String> {
+    if !image.is_float() && !changed {
         return Vec::new();
     }
     let faults = |texel| Faults { opacity: usize::from(!is_opacity(opacity(texel))), ..Faults::default() };
-    Faults::sum(image, faults).in_words(image)
+    Faults::sum(image, faults).in_words(image, false)
 }
 
 /// The same for heights.
@@ -58,12 +67,16 @@ pub(super) fn of_heights(image: &ImageFile, height: impl Fn(usize) -> f32 + Send
         let largest = if height.is_finite() { height } else { 0.0 };
         Faults { nan: usize::from(!height.is_finite()), large: usize::from(large), largest, ..Faults::default() }
     };
-    Faults::sum(image, faults).in_words(image)
+    Faults::sum(image, faults).in_words(image, false)
 }
 
 /// The same for numbers from 0 to 1, one a channel; of alpha nobody knows whether it is one.
-pub(super) fn of_numbers(image: &ImageFile, numbers: impl Fn(usize) -> [f32; 4] + Send + Sync) -> Vec<String> {
-    if !image.is_float() {
+pub(super) fn of_numbers(
+    image: &ImageFile,
+    changed: bool,
+    numbers: impl Fn(usize) -> [f32; 4] + Send + Sync,
+) -> Vec<String> {
+    if !image.is_float() && !changed {
         return Vec::new();
     }
     let faulty = |texel| numbers(texel)[..3].iter().any(|number| !is_opacity(*number));
@@ -88,14 +101,14 @@ impl Faults {
         })
     }
 
-    fn in_words(&self, image: &ImageFile) -> Vec<String> {
+    fn in_words(&self, image: &ImageFile, changed: bool) -> Vec<String> {
         let all = image.len();
         let mut said = Vec::new();
         if self.nan > 0 {
             said.push(format!("{} of its {all} texels are NaN; 0 is used there", self.nan));
         }
         if self.negative > 0 {
-            let why = if image.is_float() { "negative" } else { "colours that sRGB cannot show" };
+            let why = if image.is_float() || changed { "negative" } else { "colours that sRGB cannot show" };
             said.push(format!("{} of its {all} texels are {why}; 0 is used where they are negative", self.negative));
         }
         if self.large > 0 {

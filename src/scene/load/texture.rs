@@ -97,6 +97,19 @@ pub(super) enum Relief {
     Normals(u32),
 }
 
+/// What the texels of an image evidently are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Looks {
+    /// Normals in tangent space.
+    Normals,
+    /// Shades of grey: heights, where it is a map of relief.
+    Grey,
+    /// Mostly no vectors of unit length.
+    NoNormals,
+    /// Anything, or nobody asked.
+    Open,
+}
+
 /// The textures loaded so far; one file with the same options is loaded once, wherever its maps place it.
 #[derive(Debug, Default)]
 pub(super) struct Textures {
@@ -104,8 +117,8 @@ pub(super) struct Textures {
     pub loaded: Vec<Arc<Texture>>,
     /// For each of them.
     ranges: Vec<Range>,
-    /// Whether it evidently holds normals in tangent space.
-    normals: Vec<bool>,
+    /// What it looks like, if that was asked.
+    looks: Vec<Looks>,
     /// Their texels.
     texels: u64,
     by_key: HashMap<Key, Option<u32>>,
@@ -213,13 +226,13 @@ impl Textures {
     pub(super) fn relief(&mut self, map: &MapFile, or_normals: bool, warnings: &mut Vec<String>) -> Option<Relief> {
         let kind = Kind::Heights { channel: map.channel, or_normals };
         let texture = self.load(map, kind, NO_MAP, warnings).map(|texture| self.placed(texture, map))?;
-        let normals = or_normals && self.normals[texture as usize];
+        let normals = or_normals && self.looks(texture) == Looks::Normals;
         Some(if normals { Relief::Normals(texture) } else { Relief::Heights(texture) })
     }
 
-    /// Whether the image of a loaded map of heights or normals evidently holds normals in tangent space.
-    pub(super) fn shows_normals(&self, texture: u32) -> bool {
-        self.normals[texture as usize]
+    /// What the image of a loaded map of heights or normals looks like.
+    pub(super) fn looks(&self, texture: u32) -> Looks {
+        self.looks[texture as usize]
     }
 
     /// The texture of a map whose alpha is an opacity. None if the file cannot be used, which is a warning.
@@ -238,7 +251,7 @@ impl Textures {
         *self.by_place.entry((texture, bits)).or_insert_with(|| {
             self.loaded.push(Texture { transform, ..Texture::clone(&source) }.into());
             self.ranges.push(self.ranges[texture as usize]);
-            self.normals.push(self.normals[texture as usize]);
+            self.looks.push(self.looks[texture as usize]);
             self.loaded.len() as u32 - 1
         })
     }
@@ -257,7 +270,7 @@ impl Textures {
             let texels: Vec<_> = (0..SIDE * SIDE).map(colour).collect();
             let name = "(missing texture)".into();
             self.ranges.push(Range::of(&texels));
-            self.normals.push(false);
+            self.looks.push(Looks::Open);
             let texels = texels.into();
             self.loaded.push(Texture { name, width: SIDE, height: SIDE, texels, ..Texture::default() }.into());
             self.loaded.len() as u32 - 1
@@ -293,7 +306,7 @@ impl Textures {
         // One that is there already as normals.
         if let Kind::Heights { or_normals: true, .. } = kind
             && let Some(Some(texture)) = self.by_key.get(&Key { kind: Kind::Normals, ..key.clone() })
-            && self.normals[*texture as usize]
+            && self.looks(*texture) == Looks::Normals
         {
             return Some(*texture);
         }
@@ -305,13 +318,14 @@ impl Textures {
         let texture = match ImageFile::open(&path, MOST_TEXELS - self.texels, too_many) {
             Ok(image) => {
                 self.texels += image.len() as u64;
-                let normals = matches!(kind, Kind::Normals | Kind::Heights { .. }) && holds_normals(&image);
+                let asked = matches!(kind, Kind::Normals | Kind::Heights { .. });
+                let looks = if asked { looks(&image) } else { Looks::Open };
                 let found = match kind {
-                    Kind::Heights { or_normals: true, .. } if normals => Kind::Normals,
+                    Kind::Heights { or_normals: true, .. } if looks == Looks::Normals => Kind::Normals,
                     found => found,
                 };
                 let (texels, faults) = texels(&image, map, found);
-                self.normals.push(normals);
+                self.looks.push(looks);
                 for fault in image.warnings.iter().cloned().chain(faults) {
                     if self.said.insert(format!("{} {fault}", path.display())) {
                         warnings.push(format!("{}: the texture {}: {fault}", map.at, path.display()));
@@ -355,29 +369,30 @@ fn texels(image: &ImageFile, map: &MapFile, kind: Kind) -> (Vec<[f16; 4]>, Vec<S
         other => other,
     };
     let range = |value: f32| map.base + map.gain * value;
+    let changed = (map.base, map.gain) != (0.0, 1.0);
     let all = |texel: &(dyn Fn(usize) -> [f16; 4] + Sync)| -> Vec<[f16; 4]> {
         (0..image.len()).into_par_iter().with_min_len(CHUNK).map(texel).collect()
     };
     match kind {
         Kind::Colours => (
             image.decode(map.straight, |value| half(range(value)), opacity),
-            texel_faults::of_colours(image, map.straight, range),
+            texel_faults::of_colours(image, map.straight, changed, range),
         ),
         Kind::Stored => {
             let colour = |texel| {
                 let [r, g, b, a] = image.stored(texel);
                 [half(range(r)), half(range(g)), half(range(b)), opacity(a)]
             };
-            (all(&colour), texel_faults::of_colours(image, false, range))
+            (all(&colour), texel_faults::of_colours(image, false, changed, range))
         }
         Kind::Opacity(channel) => {
             let value = |texel| range(scalar_of(image.stored(texel), channel));
             let scalar = |texel| [f16::ONE, f16::ONE, f16::ONE, opacity(value(texel))];
-            (all(&scalar), texel_faults::of_opacities(image, value))
+            (all(&scalar), texel_faults::of_opacities(image, changed, value))
         }
         Kind::Shares => {
             let numbers = |texel| image.stored(texel).map(range);
-            (all(&|texel| numbers(texel).map(opacity)), texel_faults::of_numbers(image, numbers))
+            (all(&|texel| numbers(texel).map(opacity)), texel_faults::of_numbers(image, changed, numbers))
         }
         Kind::Luminance => {
             let number = |texel| range(luminance(image.stored(texel)));
@@ -385,14 +400,14 @@ fn texels(image: &ImageFile, map: &MapFile, kind: Kind) -> (Vec<[f16; 4]>, Vec<S
                 let grey = opacity(number(texel));
                 [grey, grey, grey, f16::ONE]
             };
-            (all(&grey), texel_faults::of_numbers(image, |texel| [number(texel); 4]))
+            (all(&grey), texel_faults::of_numbers(image, changed, |texel| [number(texel); 4]))
         }
         Kind::Normals => {
             let normal = |texel| {
                 let [r, g, b, _] = image.stored(texel).map(|value| half(range(value)));
                 [r, g, b, f16::ONE]
             };
-            (all(&normal), texel_faults::of_numbers(image, |texel| image.stored(texel).map(range)))
+            (all(&normal), texel_faults::of_numbers(image, changed, |texel| image.stored(texel).map(range)))
         }
         Kind::Heights { channel, .. } => heights(image, |texel| range(scalar_of(image.stored(texel), channel))),
     }
@@ -422,18 +437,23 @@ fn heights(image: &ImageFile, value: impl Fn(usize) -> f32 + Send + Sync) -> (Ve
     (texels, texel_faults::of_heights(image, |texel| value(texel) - least))
 }
 
-/// Whether an image evidently holds normals in tangent space: on the whole they point upwards, which is light blue, and nearly all are of unit length.
-fn holds_normals(image: &ImageFile) -> bool {
+/// What an image looks like. Normals in tangent space on the whole point upwards, which is light blue, and nearly all are of unit length.
+fn looks(image: &ImageFile) -> Looks {
     let all = (0..image.len()).into_par_iter().with_min_len(CHUNK).map(|texel| {
         let [r, g, b, _] = image.stored(texel);
         let stored = Vec3::new(r, g, b);
         let unit = (2.0 * stored - 1.0).length();
-        (stored.as_dvec3(), u64::from((0.85..=1.15).contains(&unit)))
+        (stored.as_dvec3(), u64::from((0.85..=1.15).contains(&unit)), r == g && g == b)
     });
-    let (sum, unit) = all.reduce(|| (DVec3::ZERO, 0), |a, b| (a.0 + b.0, a.1 + b.1));
-    let [r, g, b] = (sum / image.len() as f64).to_array();
+    let (sum, unit, grey) = all.reduce(|| (DVec3::ZERO, 0, true), |a, b| (a.0 + b.0, a.1 + b.1, a.2 && b.2));
+    let (count, [r, g, b]) = (image.len() as u64, (sum / image.len() as f64).to_array());
     let level = |x: f64| (0.4..=0.6).contains(&x);
-    level(r) && level(g) && b >= 0.75 && unit * 10 >= 9 * image.len() as u64
+    match () {
+        () if grey => Looks::Grey,
+        () if level(r) && level(g) && b >= 0.75 && unit * 10 >= 9 * count => Looks::Normals,
+        () if unit * 2 < count => Looks::NoNormals,
+        () => Looks::Open,
+    }
 }
 
 /// The luminance of linear sRGB primaries (ITU-R BT.709); the weights' sum is 1 even in single precision, so white is 1.

@@ -1,27 +1,29 @@
 //! A metallic-roughness surface in words.
 
 use luminaire::glam::Vec3;
-use luminaire::scene::{ChannelMap, Physical, Scene};
+use luminaire::scene::{ChannelMap, Physical, Scene, metal_name};
 
 /// Its numbers as far as they mean something, and its maps; `thin`: it is a sheet.
 pub(super) fn words(scene: &Scene, p: &Physical, thin: bool) -> Vec<String> {
     let rgb = |v: Vec3| format!("({} {} {})", v.x, v.y, v.z);
-    let mut parts = vec![format!(
-        "metallic-roughness: base colour {}, metallic {}, roughness {}, index {}",
-        rgb(p.base_color),
-        p.metallic,
-        p.roughness,
-        p.ior
-    )];
+    // Neither a whole metal's index means anything nor, with numbers of its own, its colour.
+    let metal = p.metallic == 1.0 && p.maps.metallic.is_none();
+    let kind = match p.conductor {
+        Some(_) if metal => "metallic-roughness: metallic 1".to_owned(),
+        _ => format!("metallic-roughness: base colour {}, metallic {}", rgb(p.base_color), p.metallic),
+    };
+    let index = if metal { String::new() } else { format!(", index {}", p.ior) };
+    let mut parts = vec![format!("{kind}, roughness {}{index}", p.roughness)];
     let mut part = |said: bool, words: String| {
         if said {
             parts.push(words);
         }
     };
-    part(p.specular != 1.0, format!("specular {}", p.specular));
-    part(p.specular_color != Vec3::ONE, format!("specular colour {}", rgb(p.specular_color)));
+    part(!metal && p.specular != 1.0, format!("specular {}", p.specular));
+    part(!metal && p.specular_color != Vec3::ONE, format!("specular colour {}", rgb(p.specular_color)));
     if let Some([eta, k]) = p.conductor {
-        part(true, format!("conductor of index {}, extinction {}", rgb(eta), rgb(k)));
+        let numbers = || format!("of index {}, extinction {}", rgb(eta), rgb(k));
+        part(true, format!("conductor {}", metal_name([eta, k]).map_or_else(numbers, str::to_owned)));
     }
     part(
         p.transmission > 0.0,

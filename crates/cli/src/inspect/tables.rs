@@ -99,11 +99,14 @@ fn besides(scene: &Scene, m: &Material) -> String {
     if m.opacity < 1.0 {
         parts.push(format!("opacity {}", m.opacity));
     }
+    // What nobody said otherwise is the colour with its map.
+    let own = m.physical.as_ref().map_or((m.lambert, m.maps.lambert), |p| (p.base_color, p.maps.base_color));
+    let ambient = m.maps.ambient.filter(|_| (m.ambient, m.maps.ambient) != own);
     for (map, name) in [
         (m.maps.lambert, "diffuse"),
         (m.maps.glossy, "glossy"),
         (m.maps.emission, "emission"),
-        (m.maps.ambient, "ambient"),
+        (ambient, "ambient"),
         (m.maps.opacity, "opacity"),
     ] {
         if let Some(map) = map {

@@ -8,7 +8,7 @@ use glam::Vec3;
 const MIRROR_EXPONENT: f32 = 1000.0;
 
 /// So many features that nothing models are named for a material.
-const MOST_IGNORED: usize = 32;
+pub(super) const MOST_IGNORED: usize = 32;
 
 /// The material between two `newmtl`.
 #[derive(Clone, Default)]
@@ -47,6 +47,9 @@ impl Current {
         self.words.names().into_iter().for_each(|word| self.ignore(word));
         self.impulses(at);
         self.multipliers_of_maps(at);
+        if self.draft.glossy == Some(Vec3::ZERO) && self.draft.maps.glossy.file().is_some() {
+            self.shared.push("map_Ks does nothing where Ks is 0".into());
+        }
         self.finished(file)
     }
 

@@ -4,6 +4,9 @@ use crate::scene::load::texture::{Channel, LARGEST_TRANSFORM, MapFile};
 use glam::Vec2;
 use std::path::Path;
 
+/// Behind an option that nobody knows a name is looked for from so many words on.
+const MOST_WORDS: usize = 16;
+
 /// What a texture statement says.
 #[derive(Debug)]
 pub(super) struct MapStatement {
@@ -12,7 +15,7 @@ pub(super) struct MapStatement {
     /// `-bm`.
     pub multiplier: Option<f32>,
     /// Options that would change the picture and are not modelled.
-    pub ignored: Vec<&'static str>,
+    pub ignored: Vec<String>,
     /// What else is to be said of the options, in words.
     pub notes: Vec<String>,
 }
@@ -22,12 +25,13 @@ pub(super) struct MapStatement {
 /// # Errors
 /// In words: an option without its value, or no file name.
 pub(super) fn parse(rest: &str, folder: &Path, at: String) -> Result<MapStatement, String> {
-    let mut reader = Reader { rest: rest.trim() };
+    let rest = rest.trim();
+    let mut reader = Reader { rest };
     let mut map = MapFile::plain(Vec::new(), folder, at);
     let (mut ignored, mut notes, mut multiplier) = (Vec::new(), Vec::new(), None);
-    let mut ignore = |option, changes: bool| {
-        if changes && !ignored.contains(&option) {
-            ignored.push(option);
+    let mut ignore = |option: &str, changes: bool| {
+        if changes && !ignored.iter().any(|ignored| ignored == option) {
+            ignored.push(option.to_owned());
         }
     };
     while reader.rest.starts_with('-') {
@@ -71,27 +75,66 @@ pub(super) fn parse(rest: &str, folder: &Path, at: String) -> Result<MapStatemen
                 "l" => map.channel = Channel::Luminance,
                 _ => ignore("-imfchan", true),
             },
-            // No option: a file name may begin like one.
-            _ => {
-                reader.rest = before;
-                break;
-            }
+            // A file name may begin like an option. If there is none of this name, it is an option that nobody knows, with or without values.
+            _ => match behind_unknown(before, folder) {
+                Some(behind) => {
+                    ignore(before.split_whitespace().next().unwrap_or_default(), true);
+                    reader.rest = behind;
+                }
+                None => {
+                    reader.rest = before;
+                    break;
+                }
+            },
         }
     }
     let name = reader.rest;
     if name.is_empty() {
         return Err("no file name".into());
     }
-    map.names.push(name.to_owned());
-    // A comment at the end, or a number sign in the name? Quotes, or a part of it? Only the folder knows.
-    if let Some((head, _)) = name.split_once(" #").or_else(|| name.split_once("\t#")) {
-        map.names.push(head.trim().to_owned());
+    if name.contains(" -") && !there(name, folder) {
+        // Options belong before the name, and some write them behind it.
+        let options = &rest[..rest.len() - name.len()];
+        let tails = name.match_indices(" -").filter(|(at, _)| there(&name[..*at], folder));
+        if let Some((at, _)) = tails.last() {
+            return parse(&format!("{options} {} {}", &name[at..], &name[..at]), folder, map.at);
+        }
     }
-    if let Some(inner) = name.strip_prefix('"').and_then(|name| name.strip_suffix('"')) {
-        map.names.push(inner.to_owned());
-    }
-    map.names.retain(|name| !name.is_empty());
+    map.names = meanings(name);
     Ok(MapStatement { map, multiplier, ignored, notes })
+}
+
+/// What a name may mean. A comment at the end, or a number sign in the name? Quotes, or a part of it? Only the folder knows.
+fn meanings(name: &str) -> Vec<String> {
+    let comments = name.match_indices(" #").chain(name.match_indices("\t#"));
+    let mut heads: Vec<&str> = comments.map(|(at, _)| name[..at].trim()).collect();
+    heads.sort_by_key(|head| std::cmp::Reverse(head.len()));
+    let unquoted = |name: &str| Some(name.strip_prefix('"')?.strip_suffix('"')?.to_owned());
+    let all = std::iter::once(name).chain(heads);
+    let mut names: Vec<String> = all.flat_map(|name| [Some(name.to_owned()), unquoted(name)]).flatten().collect();
+    names.retain(|name| !name.is_empty());
+    names
+}
+
+/// Whether there is a file of this name.
+fn there(name: &str, folder: &Path) -> bool {
+    let names = meanings(name);
+    !names.is_empty() && MapFile::plain(names, folder, String::new()).path().is_some_and(|path| path.is_file())
+}
+
+/// What follows an option that nobody knows and its values: another option, or the name of a file that is there. None if there is no such file.
+fn behind_unknown<'a>(rest: &'a str, folder: &Path) -> Option<&'a str> {
+    if there(rest, folder) {
+        return None;
+    }
+    let blanks = rest.match_indices(char::is_whitespace).map(|(at, blank)| at + blank.len());
+    let words = blanks.map(|at| &rest[at..]).filter(|word| !word.starts_with(char::is_whitespace));
+    // Each is looked for in the folder.
+    let words: Vec<&str> = words.take(MOST_WORDS).collect();
+    let is_option =
+        |word: &str| word.starts_with('-') && !word[1..].starts_with(|c: char| c.is_ascii_digit() || c == '.');
+    let begins = words.iter().position(|word| there(word, folder))?;
+    words[..=begins].iter().find(|word| is_option(word)).or(words.get(begins)).copied()
 }
 
 /// The first two of one to three numbers, the second being `missing` if there is none; none if one is too large.
@@ -173,6 +216,7 @@ mod tests {
         }
         assert_eq!(read("a.png # red").map.names, ["a.png # red", "a.png"]);
         assert_eq!(read("\"a b.png\"").map.names, ["\"a b.png\"", "a b.png"]);
+        assert!(read("\"a #1.png\" # red").map.names.contains(&"a #1.png".to_owned()));
     }
 
     #[test]

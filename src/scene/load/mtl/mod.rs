@@ -4,6 +4,7 @@
 
 mod blender;
 mod current;
+mod keywords;
 mod map_options;
 mod named_files;
 mod physical;
@@ -13,9 +14,10 @@ pub(super) use named_files::named_files;
 
 use super::material_draft::{BumpWord, Draft, ETAS, LARGEST_EXPONENT, MapDraft};
 use super::text_file::{Tally, logical_lines, read_text, shortened};
+use super::texture::Channel;
 use crate::Result;
 use blender::Blender;
-use current::Current;
+use current::{Current, MOST_IGNORED};
 use glam::Vec3;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -23,6 +25,8 @@ use std::path::Path;
 
 /// So many warnings about one file are kept.
 const MOST_WARNINGS: usize = 100;
+/// So many keywords that nobody knows are named.
+const MOST_KEYWORDS: usize = 8;
 /// The materials of an MTL file.
 #[derive(Debug)]
 pub(super) struct Library {
@@ -52,8 +56,7 @@ pub(super) fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Library> {
         by_name: HashMap::new(),
         said: 0,
         orphans: Tally::default(),
-        unknown: Tally::default(),
-        unknown_keyword: String::new(),
+        unknown: Vec::new(),
     };
     for (number, line) in logical_lines(&text) {
         reader.line = number;
@@ -61,8 +64,19 @@ pub(super) fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Library> {
     }
     reader.close();
     reader.orphans.warn(path, "a statement before the first newmtl is ignored", reader.warnings);
-    let unknown = format!("a statement with the unknown keyword `{}` is ignored", reader.unknown_keyword);
-    reader.unknown.warn(path, &unknown, reader.warnings);
+    for (keyword, tally) in reader.unknown.iter().take(MOST_KEYWORDS) {
+        let hint = keywords::instead_of(keyword).map(|word| format!("; did you mean `{word}`?")).unwrap_or_default();
+        let unknown = format!("a statement with the unknown keyword `{keyword}` is ignored{hint}");
+        tally.warn(path, &unknown, reader.warnings);
+    }
+    if let Some((keyword, tally)) = reader.unknown.get(MOST_KEYWORDS) {
+        let more = reader.unknown.len() - MOST_KEYWORDS;
+        tally.warn(
+            path,
+            &format!("`{keyword}` and others, {more} more unknown keywords, are ignored"),
+            reader.warnings,
+        );
+    }
     if reader.said > MOST_WARNINGS {
         reader.warnings.push(format!("{}: and {} more warnings", path.display(), reader.said - MOST_WARNINGS));
     }
@@ -85,8 +99,8 @@ struct Reader<'a> {
     /// Warnings of this file, those that were not kept included.
     said: usize,
     orphans: Tally,
-    unknown: Tally,
-    unknown_keyword: String,
+    /// Keywords that nobody knows, in the order of the file.
+    unknown: Vec<(String, Tally)>,
 }
 
 impl Reader<'_> {
@@ -141,24 +155,40 @@ impl Reader<'_> {
                 None => self.warn("illum needs a number from 0 to 10; ignored"),
             },
             "Km" | "Kt" | "sharpness" => {}
-            "bump" | "norm" => self.map(keyword, rest, &mut current),
-            "Pr" | "Pm" | "Ps" | "Pc" | "Pcr" | "aniso" | "anisor" => {
+            // A rotation in turns: whole ones do not count.
+            "anisor" => {
+                let turns = self.number(keyword, &words, f32::NEG_INFINITY);
+                let turns = turns.map(|turns| if (0.0..=1.0).contains(&turns) { turns } else { turns.rem_euclid(1.0) });
+                current.words.state(keyword, turns);
+            }
+            "Pr" | "Pm" | "Ps" | "Pc" | "Pcr" | "aniso" => {
                 // Blender's coat of 4 is one of 1.
                 let most = if keyword == "Pc" && self.blender.is_some() { 4.0 } else { 1.0 };
                 let number = self.bounded(keyword, &words, most);
                 current.words.state(keyword, number);
             }
-            "refl" if self.blender.is_some() => self.map("map_refl", rest, &mut current),
-            "disp" | "decal" | "refl" => current.ignore(shortened(keyword).into_owned()),
-            map if map.to_ascii_lowercase().starts_with("map_") => self.map(map, rest, &mut current),
-            other => {
-                if self.unknown_keyword.is_empty() {
-                    self.unknown_keyword = shortened(other).into_owned();
-                }
-                self.unknown.add(self.line);
-            }
+            // Images, in letters of any size.
+            map => match map.to_ascii_lowercase().as_str() {
+                "bump" | "norm" => self.map(keyword, rest, &mut current),
+                "refl" if self.blender.is_some() => self.map("map_refl", rest, &mut current),
+                "disp" | "decal" | "refl" => current.ignore(shortened(keyword).into_owned()),
+                name if name.starts_with("map_") => self.map(map, rest, &mut current),
+                _ => self.unknown(keyword),
+            },
         }
         self.current = Some(current);
+    }
+
+    fn unknown(&mut self, keyword: &str) {
+        let keyword = shortened(keyword);
+        let place = self.unknown.iter().position(|(known, _)| *known == keyword).unwrap_or(self.unknown.len());
+        // Of a file that is none there would be many.
+        if place == self.unknown.len() && place < MOST_IGNORED {
+            self.unknown.push((keyword.into_owned(), Tally::default()));
+        }
+        if let Some((_, tally)) = self.unknown.get_mut(place.min(MOST_IGNORED - 1)) {
+            tally.add(self.line);
+        }
     }
 
     /// Keeps a map, with its options.
@@ -175,12 +205,17 @@ impl Reader<'_> {
             "norm" | "map_kn" => &mut maps.normal,
             _ => match current.words.map(&name, self.blender.is_some()) {
                 Some(map) => map,
-                None => return current.ignore(shortened(keyword).into_owned()),
+                None => {
+                    let meant = keywords::map_instead_of(&name).map(|word| format!(" (write {word})"));
+                    return current.ignore(shortened(keyword).into_owned() + &meant.unwrap_or_default());
+                }
             },
         };
         let folder = self.path.parent().unwrap_or(Path::new(""));
         match map_options::parse(rest, folder, format!("{}:{}", self.path.display(), self.line)) {
             Ok(statement) => {
+                // Of colours and of normals all channels count.
+                let chosen = !keywords::of_a_number(&name) && statement.map.channel != Channel::Any;
                 *map = MapDraft::File(statement.map);
                 match name.as_str() {
                     "map_bump" | "bump" => {
@@ -188,8 +223,15 @@ impl Reader<'_> {
                         let blender = self.blender.is_some();
                         current.draft.bump_word = if blender { BumpWord::Blender } else { BumpWord::Mtl };
                     }
-                    "norm" | "map_kn" => current.draft.normal_scale = statement.multiplier,
+                    "norm" | "map_kn" => {
+                        current.draft.normal_scale = statement.multiplier;
+                        current.draft.normal_word = true;
+                    }
+                    _ if statement.multiplier.is_some() => current.ignore(format!("{keyword} -bm")),
                     _ => {}
+                }
+                if chosen {
+                    current.ignore(format!("{keyword} -imfchan"));
                 }
                 for option in statement.ignored {
                     current.ignore(format!("{keyword} {option}"));

@@ -3,8 +3,8 @@
 use super::blender::Blender;
 use super::current::Current;
 use super::words::Words;
-use crate::scene::load::material_draft::{Draft, MapDraft};
-use crate::scene::load::physical_draft::PhysicalDraft;
+use crate::scene::load::material_draft::{Draft, MapDraft, UNSAID_KS};
+use crate::scene::load::physical_draft::{MetalColour, PhysicalDraft};
 use crate::scene::load::texture::{Channel, MapFile};
 use glam::Vec3;
 use std::f32::consts::TAU;
@@ -31,9 +31,14 @@ pub(super) fn draft(mut reading: Current, blender: Option<Blender>, file: &str, 
     index(&mut physical, &mut reading, blender);
     let mut idle = vec![(ambient_map.file().is_some(), "map_Ka")];
     if blender.is_some() {
+        let black = ks == Some(Vec3::ZERO);
+        if black && glossy_map.file().is_some() {
+            reading.draft.notes.push(format!("{at}: Ks is black beside a map_Ks; 1 is used"));
+        } else if black {
+            physical.specular = Some(0.0);
+        }
         // A level of 0.5 is what the index says; F0 grows with it.
-        physical.specular_color = ks.map(|ks| 2.0 * ks);
-        physical.specular = ks.filter(|ks| *ks == Vec3::ZERO).map(|_| 0.0);
+        physical.specular_color = ks.filter(|_| !black).map(|ks| 2.0 * ks);
         physical.maps.specular_color = with(&glossy_map, |map| MapFile {
             base: 2.0 * map.base,
             gain: 2.0 * map.gain,
@@ -42,15 +47,12 @@ pub(super) fn draft(mut reading: Current, blender: Option<Blender>, file: &str, 
         });
     } else if reading.is_black()
         && physical.transmission.is_none()
-        && physical.metallic.is_none_or(|metal| metal == 1.0)
         && (glossy_map.file().is_some() || ks.is_some_and(|ks| ks != Vec3::ZERO))
     {
-        // What has no other colour has that of its reflection: so metals are written.
-        reading.draft.diffuse = ks;
-        reading.draft.maps.diffuse = glossy_map;
-        reading.shared.push("Kd is black, and Ks taken as the colour of the metal (base colour)".into());
+        // What has no other colour has that of its reflection, if it is a metal: a scene file may have a word in that.
+        physical.metal_colour = Some(MetalColour { colour: ks, map: glossy_map, file: file.to_owned() });
     } else {
-        let unsaid = [Vec3::ZERO, Vec3::splat(0.5)];
+        let unsaid = [Vec3::ZERO, UNSAID_KS];
         let rough = words.roughness.is_some() || physical.maps.roughness.file().is_some();
         idle.extend([
             (ks.is_some_and(|ks| !unsaid.contains(&ks)), "Ks"),
@@ -66,14 +68,25 @@ pub(super) fn draft(mut reading: Current, blender: Option<Blender>, file: &str, 
     reading.opacity(at);
     reading.multipliers_of_maps(at);
     // Exporters write 0 beside a map and mean 1.
+    let maps = &physical.maps;
+    let mut zeros = Vec::new();
     for (word, number, map) in [
-        ("Pr", &mut physical.roughness, &physical.maps.roughness),
-        ("Pm", &mut physical.metallic, &physical.maps.metallic),
+        ("Pr", &mut physical.roughness, &maps.roughness),
+        ("Pm", &mut physical.metallic, &maps.metallic),
+        ("Pc", &mut physical.clearcoat, &maps.clearcoat),
+        ("Pcr", &mut physical.clearcoat_roughness, &maps.clearcoat_roughness),
     ] {
         if *number == Some(0.0) && map.file().is_some() {
             *number = None;
-            reading.draft.notes.push(format!("{at}: {word} is 0 beside a map_{word}; 1 is used"));
+            zeros.push(word);
         }
+    }
+    if physical.sheen_color == Some(Vec3::ZERO) && maps.sheen_color.file().is_some() {
+        physical.sheen_color = None;
+        zeros.push("Ps");
+    }
+    for word in zeros {
+        reading.draft.notes.push(format!("{at}: {word} is 0 beside a map_{word}; 1 is used"));
     }
     reading.draft.physical = Some(Box::new(physical));
     reading.finished(file)

@@ -16,36 +16,48 @@ const KEYS: &str = "\
 # Materials. Each is listed with what it is now; the MTL file goes on counting for what no table says. To change one, remove the `#` from
 # its `[[material]]`, its `name` and the keys that are meant.
 #   diffuse             diffuse albedo, RGB from 0 to 1
-#   glossy, exponent    albedo of a Blinn-Phong lobe at normal incidence, and its exponent, 0 to 1e8
-#   emission            emitted radiance, 0 or more: a lamp; `one_sided = true`: only its outward side emits
-#   reflection          albedo of a mirror; with `eta` it lies over the rest, as varnish does
+#   glossy, exponent    albedo of a Blinn-Phong lobe at normal incidence, RGB, and its exponent, 0 to 1e8; without them 0 and 10
+#   emission            emitted radiance, RGB of 0 or more: a lamp; `one_sided = true`: only its outward side emits
+#   reflection          albedo of a mirror, RGB from 0 to 1; with `eta` it lies over the rest, as varnish does
 #   transmission, eta   albedo of what passes into glass, and its index of refraction, 0.01 to 100; `thin = true`: a pane, which bends nothing
-#   opacity             share of light that meets the surface at all, 0 (a hole) to 1
+#   opacity             share of light that meets the surface at all, 0 (a hole) to 1; without it 1
 #   normal_map, normal_scale
-#                       an image of normals in tangent space (OpenGL's: green is up), and a factor to what they have along the surface
+#                       an image of normals in tangent space (OpenGL's: green is up), and a factor to what they have along the surface; without it 1
 #   bump_map, bump_scale
-#                       an image of heights, and the length of a height of 1
+#                       an image of heights, and the length of a height of 1; without it 1
 #   ambient             albedo for the ambient term of the simple ray tracer
 #   impulse_probability above 0 and below 1: how often a path takes the mirror or glass; changes the noise, never the mean
 #   diffuse_map, glossy_map, emission_map, ambient_map, opacity_map
 #                       an image that multiplies the number: \"FILE\", or { image = \"FILE\", scale = [2, 2], offset = [0.5, 0] }; \"\" removes it
 # In place of diffuse, glossy, exponent, reflection, transmission, eta and impulse_probability, a metallic-roughness surface, as glTF describes it, has:
-#   base_colour         colour of what is diffuse, of metal, and of what passes, RGB from 0 to 1
-#   metallic, roughness how much of it is metal, and how rough it is, 0 (smooth) to 1
-#   ior                 index of refraction, 1 to 100, by which it reflects where it is no metal; 0: it reflects all of `specular_colour`
+#   base_colour         colour of what is diffuse, of metal, and of what passes, RGB from 0 to 1; without it 0.8, with a map 1
+#   metallic            how much of it is metal, 0 to 1; without it 0, with `conductor` 1
+#   roughness           how rough it is, 0 (smooth) to 1; without it 0.5
+#   ior                 index of refraction, 1 to 100, by which it reflects where it is no metal, without it 1.5; 0: it reflects all of `specular_colour`
 #   specular, specular_colour
-#                       factors to that reflection: everywhere, 0 to 1, and seen from straight above, RGB of 0 or more
-#   conductor           \"gold\", \"silver\", \"copper\", \"aluminium\" and others, or { eta = [r, g, b], k = [r, g, b] }: a metal by its numbers
-#   transmission        share of light that passes in place of being scattered, 0 to 1; `thin = true` as above
+#                       factors to that reflection: everywhere, 0 to 1, and seen from straight above, RGB of 0 or more; without them 1
+#   conductor           \"aluminium\", \"chromium\", \"copper\", \"gold\", \"mercury\", \"nickel\", \"silver\", \"tungsten\", or { eta = [r, g, b], k = [r, g, b] }: a metal by
+#                       its index of refraction and its extinction coefficient, in place of the base colour
+#   transmission        share of light that passes in place of being scattered, 0 to 1; without it 0; `thin = true` as above
 #   attenuation_colour, attenuation_distance
-#                       what is left of white light behind so long a way within, RGB above 0, and the way
+#                       what is left of white light behind so long a way within, RGB above 0, at most 1, and the way, above 0; without them it is clear
 #   clearcoat, clearcoat_roughness
-#                       strength and roughness of a varnish of index 1.5, 0 to 1
-#   sheen_colour, sheen_roughness, anisotropy, anisotropy_rotation, iridescence, iridescence_ior, iridescence_thickness, dispersion
-#                       scenes/README.md has them
+#                       strength and roughness of a varnish of index 1.5, 0 to 1; without them 0
+#   anisotropy, anisotropy_rotation
+#                       how much rougher it is in one direction, 0 to 1, and that direction in degrees, counter-clockwise from the tangent; without them 0;
+#                       for a mesh with texture coordinates, along which the grain lies
 #   model               \"metallic-roughness\" or \"blinn-phong\": which of both it is, where no other key says it
-#   base_colour_map, metallic_map, roughness_map and others
-#                       images, as above; that of a number may say which channel it is: { image = \"FILE\", channel = \"g\" }
+#   base_colour_map, metallic_map, roughness_map, specular_map, specular_colour_map, transmission_map, clearcoat_map, clearcoat_roughness_map, anisotropy_map
+#                       images, as above (of anisotropy red and green are a direction, blue is the strength); that of a number may say which channel it is:
+#                       { image = \"FILE\", channel = \"g\" }, \"r\", \"g\", \"b\", \"a\" or \"luminance\"; without it the luminance
+# Read, and not traced, which a warning says:
+#   sheen_colour, sheen_roughness
+#                       what fibres above it reflect, RGB from 0 to 1, and their roughness, 0 to 1; without them 0
+#   iridescence, iridescence_ior, iridescence_thickness
+#                       strength of a thin film, 0 to 1; its index, 1 to 100; its thickness in nanometres, or [least, greatest]; without them 0, 1.3, [100, 400]
+#   dispersion          20 over Abbe's number, 0 or more; without it 0
+#   sheen_colour_map, sheen_roughness_map, iridescence_map, iridescence_thickness_map
+#                       their images
 ";
 
 /// A commented table for each material that the model names or shows; `drafts` are what the first materials of the scene are made of. Files are named as

@@ -290,12 +290,19 @@ const LUMINAIRES: &str = "
 # position = [0, 1, 0]
 # intensity = [1, 1, 1]
 # [[luminaire]]
+# kind = \"point\"                         # one that shines as a photometric file says
+# position = [0, 3, 0]
+# profile = \"lamp.ies\"                   # an IES file (LM-63), in candela
+# direction = [0, -1, 0]                 # where its vertical angle of 0 looks; without it down
+# up = [1, 0, 0]                         # the side to which its horizontal angle of 0 looks; without it up, or +x where `direction` is vertical
+# intensity = [1, 1, 1]                  # a factor to it
+# [[luminaire]]
 # kind = \"spot\"                          # a point that shines into a cone: no light beyond outer_angle from direction, all of it within inner_angle
 # position = [0, 3, 0]
 # direction = [0, -1, 0]
 # intensity = [1, 1, 1]
-# inner_angle = 20
-# outer_angle = 30
+# inner_angle = 20                       # degrees from the axis, 0 to outer_angle; without it 0
+# outer_angle = 30                       # degrees from the axis, 0.0001 to 90
 # [[luminaire]]
 # kind = \"infinite\"                      # direction in which the light travels; irradiance on a surface that faces it
 # direction = [0.3, -0.8, -0.7]

@@ -37,7 +37,7 @@ pub(super) fn table(
     key("specular_colour", p.specular_color != default.specular_color, triple(p.specular_color));
     if let Some([eta, k]) = p.conductor {
         let numbers = || format!("{{ eta = {}, k = {} }}", triple(eta), triple(k));
-        key("conductor", true, metals::name_of([eta, k]).map_or_else(numbers, quoted));
+        key("conductor", true, metals::metal_name([eta, k]).map_or_else(numbers, quoted));
     }
     key("transmission", transmits, number(p.transmission));
     key("thin", transmits, m.thin.to_string());

@@ -2,8 +2,8 @@
 
 use super::foreign_words::{KEYS, NAMES};
 use super::tables::{
-    EnvironmentTable, FilmTable, GroundTable, IntegratorTable, LuminaireEntry, MaterialTable, ObjectTable, RenderTable,
-    SceneFile, SensorTable,
+    ConductorTable, EnvironmentTable, FilmTable, GroundTable, IntegratorTable, LuminaireEntry, MaterialTable,
+    ObjectTable, PlacedMap, RenderTable, SceneFile, SensorTable,
 };
 use crate::picture::linear;
 use crate::scene::load::near_name::near_name;
@@ -26,6 +26,11 @@ fn tables() -> [(&'static str, bool, Vec<String>); 10] {
         ("material", true, keys::<MaterialTable>()),
         ("luminaire", true, keys::<LuminaireEntry>()),
     ]
+}
+
+/// The tables within a material, with a name for what they are.
+fn inner_tables() -> [(&'static str, Vec<String>); 2] {
+    [("map", keys::<PlacedMap>()), ("conductor", keys::<ConductorTable>())]
 }
 
 /// The keys of a table: those that its parser names to whoever writes another one.
@@ -100,6 +105,7 @@ pub(super) fn in_plain_words(message: &str, text: &str, span: Range<usize>) -> S
         ("expected f32", "expected a number"),
         ("expected i64", "expected a whole number"),
         ("expected u32", "expected a whole number from 0 to 4294967295"),
+        ("wanted string or table", "expected a name between quotes"),
     ];
     let plain = replaced.iter().fold(message.to_owned(), |text, (from, to)| text.replace(from, to));
     match advice(message, text, span) {
@@ -113,6 +119,14 @@ fn unknown_key(key: &str, expected: &[String]) -> String {
     let all = tables();
     let table = all.iter().find(|(.., keys)| keys == expected).map_or("", |(name, ..)| *name);
     let word = plain(key);
+    let list = expected.iter().map(|key| format!("`{key}`")).collect::<Vec<_>>().join(", ");
+    if let Some((table, _)) = inner_tables().into_iter().find(|(_, keys)| keys == expected) {
+        let near =
+            || near_name(&word, expected.iter().map(String::as_str)).map(|name| format!("did you mean `{name}`?"));
+        let hint = foreign(KEYS, |name| name == table, &word).map(str::to_owned).or_else(near);
+        let hint = hint.map(|hint| format!("{hint}; ")).unwrap_or_default();
+        return format!("unknown key `{}` of a {table}: {hint}there are {list}", shortened(key));
+    }
     let place =
         |name: &str| if name == "top" { "outside of the tables".to_owned() } else { format!("in {}", written(name)) };
     let elsewhere = || {
@@ -125,13 +139,20 @@ fn unknown_key(key: &str, expected: &[String]) -> String {
         "top" => format!("write {}", written(name)),
         _ => format!("write `{name}`"),
     });
+    // As glTF names its textures.
+    let texture = || {
+        let map =
+            format!("{}_map", word.strip_suffix("_texture").or(word.strip_suffix("texture"))?.trim_end_matches('_'));
+        let map = map.replace("color", "colour");
+        expected.contains(&map).then(|| format!("an image is named by `{map}`"))
+    };
     let hint = same
         .or_else(|| foreign(KEYS, |name| name == table, &word).map(str::to_owned))
+        .or_else(texture)
         .or_else(elsewhere)
         .or_else(|| foreign(KEYS, str::is_empty, &word).map(str::to_owned))
         .or_else(near);
     let hint = hint.map(|hint| format!("{hint}; ")).unwrap_or_default();
-    let list = expected.iter().map(|key| format!("`{key}`")).collect::<Vec<_>>().join(", ");
     let what = if table == "top" { "the tables are" } else { "there are" };
     format!("unknown key `{}` {}: {hint}{what} {list}", shortened(key), place(table))
 }
@@ -168,6 +189,9 @@ fn advice(message: &str, text: &str, span: Range<usize>) -> Option<String> {
     let value = text.get(span.clone()).unwrap_or_default().trim_matches(['"', '\'']);
     if message.starts_with("invalid type: string") {
         if message.contains("three numbers") {
+            if let Some(number) = value.trim().parse::<f64>().ok().filter(|_| message.contains("or one")) {
+                return Some(format!("write it without quotes: {number}"));
+            }
             let rgb = hex_colour(value).map(|[r, g, b]| format!("{value} is [{r:.4}, {g:.4}, {b:.4}] in linear RGB"));
             return rgb.or_else(|| Some("write them in brackets: [0, 0.5, 1]".to_owned()));
         }
@@ -192,7 +216,10 @@ fn advice(message: &str, text: &str, span: Range<usize>) -> Option<String> {
             "target" => "the point in the middle of the picture [x, y, z]",
             "mesh" => "the OBJ file, as \"FILE.obj\"",
             "name" => "which material it is, as `usemtl` or the `material` of an object calls it",
-            "kind" => "\"point\" or \"infinite\"",
+            "kind" => "\"point\", \"spot\" or \"infinite\"",
+            "image" => "the name of the picture",
+            "eta" => "the metal's index of refraction [r, g, b]",
+            "k" => "the metal's extinction coefficient [r, g, b]",
             _ => return None,
         };
         return Some(what.to_owned());

@@ -2,6 +2,7 @@
 
 use super::file::{File, read_text};
 use super::tables::{SceneFile, SensorTable, Sensors};
+use super::values::Finite;
 use crate::scene::{Camera, Exposure, Tone};
 use crate::{Error, Result};
 use ::toml::Spanned;
@@ -16,6 +17,11 @@ impl Sensors {
             Sensors::One(table) => vec![(table, whole)],
             Sensors::Several(tables) => tables.iter().map(|table| (table.get_ref(), table.span())).collect(),
         }
+    }
+
+    /// The first one's turn of its aperture.
+    pub(super) fn blade_rotation(&self) -> Option<&Spanned<Finite>> {
+        self.tables(0..0).into_iter().find_map(|(table, _)| table.blade_rotation.as_ref())
     }
 }
 

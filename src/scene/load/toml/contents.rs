@@ -20,11 +20,13 @@ impl File<'_> {
     pub(super) fn object(&self, table: &Spanned<ObjectTable>, loader: &mut Loader) -> Result<(Object, DAffine3)> {
         let object = table.get_ref();
         let to_world = self.transform(table)?;
-        if let Some(warning) = object.rotate.and_then(|rotate| radians::rotation(rotate.rounded())) {
+        let turned = object.rotate.and_then(|rotate| radians::rotation(rotate.rounded()));
+        let smooth = object.smooth.and_then(|smooth| radians::smooth(smooth.0));
+        for warning in turned.into_iter().chain(smooth) {
             let (line, _) = line_and_column(self.text, table.span().start);
             loader.warnings.push(format!("{}:{line}: {warning}", self.path.display()));
         }
-        let mesh_path = self.beside(object.mesh.get_ref());
+        let mesh_path = self.named(&object.mesh, "an OBJ file")?;
         if !mesh_path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("obj")) {
             let what = other_formats::named(&mesh_path).map(|what| format!(" ({what})")).unwrap_or_default();
             let message = format!("`{}`: a mesh has to be an .obj file{what}", object.mesh.get_ref());

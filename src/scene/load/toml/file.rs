@@ -2,6 +2,7 @@
 
 use crate::scene::load::text_file::{line_and_column, read_bytes};
 use crate::{Error, Result};
+use ::toml::Spanned;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -36,6 +37,17 @@ impl File<'_> {
     /// A file that the scene file names.
     pub(super) fn beside(&self, name: &str) -> PathBuf {
         self.folder().join(name)
+    }
+
+    /// The file of a key that needs one; `what` it names.
+    ///
+    /// # Errors
+    /// If the name is empty.
+    pub(super) fn named(&self, name: &Spanned<String>, what: &str) -> Result<PathBuf> {
+        if name.get_ref().trim().is_empty() {
+            return Err(self.error(name.span(), format!("an empty name, expected the name of {what}")));
+        }
+        Ok(self.beside(name.get_ref()))
     }
 
     pub(super) fn folder(&self) -> &Path {

@@ -10,7 +10,9 @@ use crate::scene::load::text_file::line_and_column;
 use crate::scene::{LEAST_ANGLE, Luminaire, SunDisc};
 use crate::{Error, Result};
 use ::toml::Spanned;
+use ::toml::de::{DeTable, DeValue};
 use glam::{DVec3, Vec3};
+use std::ops::Range;
 
 const POINT: &str = "a point luminaire has `position` and `intensity`, both and nothing else; or `position` and `profile`, the name of an IES file, with which there may be \
                      `intensity`, `direction` and `up`";
@@ -40,15 +42,18 @@ impl File<'_> {
         let (line, _) = line_and_column(self.text, table.span().start);
         let Some(name) = &table.get_ref().profile else {
             let luminaire = self.plain(table, origin)?;
-            if let Luminaire::Spot { outer, .. } = luminaire
-                && let Some(warning) = radians::cone(outer)
-            {
+            let warning = match luminaire {
+                Luminaire::Spot { inner, outer, .. } => radians::cone(inner, outer),
+                Luminaire::Sun { angle, .. } => radians::sun(angle),
+                _ => None,
+            };
+            if let Some(warning) = warning {
                 loader.warnings.push(format!("{}:{line}: {warning}", self.path.display()));
             }
             return Ok(luminaire);
         };
         let (position, direction, up, intensity) = self.photometric(table)?;
-        let path = self.beside(name.get_ref());
+        let path = self.named(name, "an IES file")?;
         let profile = loader.profile(&path).map_err(|error| match error {
             Error::Read { .. } => self.error(name.span(), error.to_string() + &instead_of(&path)),
             other => other,
@@ -129,10 +134,67 @@ impl File<'_> {
                 }
                 Ok(Luminaire::Sun { direction, irradiance, angle })
             }
-            (LuminaireKind::Point, ..) => Err(self.error(table.span(), POINT)),
-            (LuminaireKind::Spot, ..) => Err(self.error(table.span(), SPOT)),
-            (LuminaireKind::Infinite, ..) => Err(self.error(table.span(), INFINITE)),
+            (LuminaireKind::Point, ..) => Err(self.misfit(table, POINT, &["position", "intensity"], &[])),
+            (LuminaireKind::Spot, ..) => {
+                let wanted = ["position", "direction", "intensity", "outer_angle"];
+                Err(self.misfit(table, SPOT, &wanted, &["inner_angle"]))
+            }
+            (LuminaireKind::Infinite, ..) => {
+                Err(self.misfit(table, INFINITE, &["direction", "irradiance"], &["angle"]))
+            }
         }
+    }
+
+    /// A table whose keys are not those of its kind: which is too much, at its line, or missing. `sentence` is what it has.
+    fn misfit(&self, table: &Spanned<LuminaireEntry>, sentence: &str, wanted: &[&str], allowed: &[&str]) -> Error {
+        let LuminaireEntry {
+            kind: _,
+            position,
+            intensity,
+            profile,
+            direction,
+            up,
+            inner_angle,
+            outer_angle,
+            irradiance,
+            angle,
+        } = table.get_ref();
+        let stated: Vec<&str> = [
+            ("position", position.is_some()),
+            ("intensity", intensity.is_some()),
+            ("profile", profile.is_some()),
+            ("direction", direction.is_some()),
+            ("up", up.is_some()),
+            ("inner_angle", inner_angle.is_some()),
+            ("outer_angle", outer_angle.is_some()),
+            ("irradiance", irradiance.is_some()),
+            ("angle", angle.is_some()),
+        ]
+        .into_iter()
+        .filter_map(|(key, stated)| stated.then_some(key))
+        .collect();
+        let listed = |keys: Vec<&str>| keys.iter().map(|key| format!("`{key}`")).collect::<Vec<_>>().join(", ");
+        let missing: Vec<&str> = wanted.iter().filter(|key| !stated.contains(key)).copied().collect();
+        let foreign = |key: &&&str| !wanted.contains(*key) && !allowed.contains(*key);
+        let others: Vec<&str> = stated.iter().filter(foreign).copied().collect();
+        let place = others.first().and_then(|key| self.luminaire_key(table, key)).unwrap_or(table.span());
+        let parts = [(missing, "missing here"), (others, "too much")].map(|(keys, what)| match keys.len() {
+            0 => None,
+            1 => Some(format!("{} is {what}", listed(keys))),
+            _ => Some(format!("{} are {what}", listed(keys))),
+        });
+        let said: Vec<String> = parts.into_iter().flatten().collect();
+        self.error(place, format!("{}: {sentence}", said.join(", and ")))
+    }
+
+    /// Where a key of a luminaire stands.
+    fn luminaire_key(&self, table: &Spanned<LuminaireEntry>, key: &str) -> Option<Range<usize>> {
+        let root = DeTable::parse(self.text).ok()?;
+        let DeValue::Array(tables) = root.get_ref().get("luminaire")?.get_ref() else { return None };
+        let DeValue::Table(table) = tables.iter().find(|value| value.span() == table.span())?.get_ref() else {
+            return None;
+        };
+        table.keys().find(|name| *name.get_ref() == key).map(Spanned::span)
     }
 
     /// Where one with a profile is, where it looks, what is up, and its factor.
@@ -141,14 +203,12 @@ impl File<'_> {
         let LuminaireEntry { inner_angle, outer_angle, irradiance, angle, .. } = table.get_ref();
         let nothing_else = matches!((inner_angle, outer_angle, irradiance, angle), (None, None, None, None));
         let (LuminaireKind::Point, Some(position), true) = (kind, position, nothing_else) else {
-            return Err(self.error(
-                table.span(),
-                if matches!(kind, LuminaireKind::Point) {
-                    POINT.to_owned()
-                } else {
-                    format!("a `profile` is for a luminaire of the kind \"point\": {POINT}")
-                },
-            ));
+            return Err(if matches!(kind, LuminaireKind::Point) {
+                self.misfit(table, POINT, &["position"], &["profile", "intensity", "direction", "up"])
+            } else {
+                let message = format!("a `profile` is for a luminaire of the kind \"point\": {POINT}");
+                self.error(table.span(), message)
+            });
         };
         let direction = direction.as_ref().map_or(Ok(Vec3::NEG_Y), |direction| self.direction(table, direction))?;
         let up = match up {

@@ -2,6 +2,7 @@
 
 use super::advice::name_hint;
 use super::file::File;
+use super::radians;
 use super::tables::{ConductorEntry, MapChannel, MapEntry, MaterialTable, Model, PlacedMap};
 use super::values::Transmission;
 use crate::scene::load::material_draft::{Draft, DraftMaps, MapDraft};
@@ -46,8 +47,9 @@ impl File<'_> {
         let physical = self.physical(table)?;
         let of_physical = physical_keys(table);
         let stated = |model: Model| (table.model == Some(model)).then_some("model");
-        let blinn_phong = of_blinn_phong.first().copied().or(stated(Model::BlinnPhong));
-        let metallic_roughness = of_physical.first().copied().or(stated(Model::MetallicRoughness));
+        // What says so outright before what means so.
+        let blinn_phong = stated(Model::BlinnPhong).or(of_blinn_phong.first().copied());
+        let metallic_roughness = stated(Model::MetallicRoughness).or(of_physical.first().copied());
         if let (Some(one), Some(other)) = (blinn_phong, metallic_roughness) {
             return Err(self.two_models(number, one, other));
         }
@@ -61,7 +63,7 @@ impl File<'_> {
         });
         let diffuse = table.diffuse.map(|colour| colour.0);
         let base_map = if table.base_colour_map.is_some() { &table.base_colour_map } else { &table.diffuse_map };
-        Ok(Draft {
+        let mut draft = Draft {
             name: table.name.get_ref().clone(),
             ambient: table.ambient.map(|colour| colour.0),
             diffuse: diffuse.or(table.base_colour.map(|colour| colour.0)),
@@ -89,7 +91,14 @@ impl File<'_> {
             physical: metallic_roughness.map(|_| Box::new(physical)),
             blinn_phong: at,
             ..Draft::default()
-        })
+        };
+        draft.notes = draft.idle_maps();
+        let turned = table.anisotropy_rotation.and_then(|turn| radians::turn("anisotropy_rotation", turn.0 as f32));
+        draft.notes.extend(turned.map(|warning| {
+            let (line, _) = line_and_column(self.text, self.key(number, "anisotropy_rotation").start);
+            format!("{}:{line}: {warning}", self.path.display())
+        }));
+        Ok(draft)
     }
 
     /// What only a metallic-roughness surface has, but for its base colour.
@@ -118,6 +127,7 @@ impl File<'_> {
             iridescence_ior: table.iridescence_ior.map(|ior| ior.0),
             iridescence_thickness: table.iridescence_thickness.map(|thickness| thickness.0),
             dispersion: table.dispersion.map(|dispersion| dispersion.0),
+            metal_colour: None,
             maps: PhysicalDraftMaps {
                 metallic: self.map(&table.metallic_map, MapOf::Number)?,
                 roughness: self.map(&table.roughness_map, MapOf::Number)?,

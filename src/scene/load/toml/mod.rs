@@ -15,6 +15,7 @@ mod values;
 use super::choices::Choices;
 use super::ground::{self, Ground};
 use super::loader::Loader;
+use super::text_file::line_and_column;
 use super::{environment, reach};
 use crate::scene::build::pinhole;
 use crate::scene::{Camera, FirstView, Projection, RenderSettings, Scene};
@@ -77,6 +78,18 @@ impl File<'_> {
                 && let Some(warning) = radians::field_of_view(fov)
             {
                 loader.warnings.push(self.warning(&warning));
+            }
+        }
+        let turns = [
+            ("rotate", file.environment.as_ref().and_then(|table| table.get_ref().rotate.as_ref())),
+            ("blade_rotation", file.sensor.as_ref().and_then(|sensors| sensors.get_ref().blade_rotation())),
+        ];
+        for (key, turn) in turns {
+            if let Some(turn) = turn
+                && let Some(warning) = radians::turn(key, turn.get_ref().0)
+            {
+                let (line, _) = line_and_column(self.text, turn.span().start);
+                loader.warnings.push(format!("{}:{line}: {warning}", self.path.display()));
             }
         }
         let environment = match (sky, &file.environment) {

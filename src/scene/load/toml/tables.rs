@@ -8,7 +8,7 @@ use super::values::{
 use crate::scene::{AreaSampling, Directions, Extinction, Filter, LightChoice, LightSampling, Sampler, Tone};
 use ::toml::Spanned;
 use serde::de::value::MapAccessDeserializer;
-use serde::de::{MapAccess, SeqAccess, Visitor};
+use serde::de::{Error, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
 #[derive(Deserialize)]
@@ -243,14 +243,32 @@ pub(super) enum Model {
     MetallicRoughness,
 }
 
-#[derive(Deserialize)]
-#[serde(
-    untagged,
-    expecting = "expected the name of a metal, or { eta = [r, g, b], k = [r, g, b] }, its index of refraction and its extinction coefficient"
-)]
+/// A metal.
 pub(super) enum ConductorEntry {
     Metal(String),
     Numbers(ConductorTable),
+}
+
+impl<'de> Deserialize<'de> for ConductorEntry {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+        // Not an untagged enum, which would lose the places and the words of errors within.
+        struct NameOrNumbers;
+        impl<'de> Visitor<'de> for NameOrNumbers {
+            type Value = ConductorEntry;
+            fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+                f.write_str(
+                    "the name of a metal, or { eta = [r, g, b], k = [r, g, b] }, its index of refraction and its extinction coefficient",
+                )
+            }
+            fn visit_str<E: Error>(self, name: &str) -> std::result::Result<ConductorEntry, E> {
+                Ok(ConductorEntry::Metal(name.to_owned()))
+            }
+            fn visit_map<A: MapAccess<'de>>(self, table: A) -> std::result::Result<ConductorEntry, A::Error> {
+                ConductorTable::deserialize(MapAccessDeserializer::new(table)).map(ConductorEntry::Numbers)
+            }
+        }
+        deserializer.deserialize_any(NameOrNumbers)
+    }
 }
 
 #[derive(Deserialize)]
@@ -260,14 +278,32 @@ pub(super) struct ConductorTable {
     pub k: Colour,
 }
 
-#[derive(Deserialize)]
-#[serde(
-    untagged,
-    expecting = "expected the name of an image, or { image = NAME, scale = [u, v], offset = [u, v], channel = \"r\" } with numbers from -1e6 to 1e6, no scale of 0, and of the maps of numbers a channel: \"r\", \"g\", \"b\", \"a\" or \"luminance\""
-)]
+/// A map.
 pub(super) enum MapEntry {
     Image(String),
     Placed(PlacedMap),
+}
+
+impl<'de> Deserialize<'de> for MapEntry {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+        // Not an untagged enum either.
+        struct NameOrTable;
+        impl<'de> Visitor<'de> for NameOrTable {
+            type Value = MapEntry;
+            fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+                f.write_str(
+                    "the name of an image, or { image = \"NAME\" } with `scale`, `offset` or `channel` beside it",
+                )
+            }
+            fn visit_str<E: Error>(self, name: &str) -> std::result::Result<MapEntry, E> {
+                Ok(MapEntry::Image(name.to_owned()))
+            }
+            fn visit_map<A: MapAccess<'de>>(self, table: A) -> std::result::Result<MapEntry, A::Error> {
+                PlacedMap::deserialize(MapAccessDeserializer::new(table)).map(MapEntry::Placed)
+            }
+        }
+        deserializer.deserialize_any(NameOrTable)
+    }
 }
 
 #[derive(Deserialize)]

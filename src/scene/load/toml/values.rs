@@ -160,15 +160,30 @@ pub(super) struct Ior(pub f32);
 pub(super) struct FilmIor(pub f32);
 
 /// The thickness of a film in nanometres: the same everywhere, or the least and the greatest.
-#[derive(Debug, Clone, Copy, Deserialize)]
-#[serde(try_from = "NumberOrPair")]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct FilmThickness(pub [f32; 2]);
 
-#[derive(Deserialize)]
-#[serde(untagged, expecting = "expected nanometres, or two of them [least, greatest]")]
-enum NumberOrPair {
-    Number(f64),
-    Pair([f64; 2]),
+impl<'de> Deserialize<'de> for FilmThickness {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+        struct NumberOrPair;
+        impl<'de> Visitor<'de> for NumberOrPair {
+            type Value = FilmThickness;
+            fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+                f.write_str("nanometres, or two of them [least, greatest]")
+            }
+            fn visit_f64<E: Error>(self, number: f64) -> std::result::Result<FilmThickness, E> {
+                [number; 2].try_into().map_err(E::custom)
+            }
+            fn visit_i64<E: Error>(self, number: i64) -> std::result::Result<FilmThickness, E> {
+                self.visit_f64(number as f64)
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> std::result::Result<FilmThickness, A::Error> {
+                let Numbers(pair) = Numbers::<2>::deserialize(SeqAccessDeserializer::new(list))?;
+                pair.try_into().map_err(A::Error::custom)
+            }
+        }
+        deserializer.deserialize_any(NumberOrPair)
+    }
 }
 
 /// A field of view in degrees.
@@ -250,12 +265,12 @@ pub(super) struct Bounces(pub u32);
 
 /// How often a map is there between the coordinates 0 and 1, each way; not 0.
 #[derive(Debug, Clone, Copy, Deserialize)]
-#[serde(try_from = "[f64; 2]")]
+#[serde(try_from = "Numbers<2>")]
 pub(super) struct MapScale(pub Vec2);
 
 /// The place in a map that the coordinates (0, 0) show.
 #[derive(Debug, Clone, Copy, Deserialize)]
-#[serde(try_from = "[f64; 2]")]
+#[serde(try_from = "Numbers<2>")]
 pub(super) struct MapOffset(pub Vec2);
 
 /// By how many widths and heights a picture is shifted.
@@ -343,35 +358,32 @@ impl TryFrom<f64> for FilmIor {
     }
 }
 
-impl TryFrom<NumberOrPair> for FilmThickness {
+impl TryFrom<[f64; 2]> for FilmThickness {
     type Error = &'static str;
-    fn try_from(said: NumberOrPair) -> Checked<Self> {
-        let thickness = match said {
-            NumberOrPair::Number(both) => [both as f32; 2],
-            NumberOrPair::Pair(pair) => pair.map(|number| number as f32),
-        };
+    fn try_from(pair: [f64; 2]) -> Checked<Self> {
+        let thickness = pair.map(|number| number as f32);
         let some = thickness.iter().all(|number| number.is_finite() && *number >= 0.0);
         some.then_some(FilmThickness(thickness))
             .ok_or("expected nanometres of at least 0, or two of them [least, greatest]")
     }
 }
 
-impl TryFrom<[f64; 2]> for MapScale {
+impl TryFrom<Numbers<2>> for MapScale {
     type Error = &'static str;
-    fn try_from(numbers: [f64; 2]) -> Checked<Self> {
+    fn try_from(numbers: Numbers<2>) -> Checked<Self> {
         let MapOffset(scale) = numbers.try_into()?;
         let some = scale.x != 0.0 && scale.y != 0.0;
-        some.then_some(MapScale(scale)).ok_or("expected numbers other than 0")
+        some.then_some(MapScale(scale)).ok_or("expected two numbers other than 0: how often the picture is there")
     }
 }
 
-impl TryFrom<[f64; 2]> for MapOffset {
+impl TryFrom<Numbers<2>> for MapOffset {
     type Error = &'static str;
-    fn try_from(numbers: [f64; 2]) -> Checked<Self> {
+    fn try_from(Numbers(numbers): Numbers<2>) -> Checked<Self> {
         let pair = DVec2::from(numbers).as_vec2();
         // Written so that what is no number fails.
         let some = pair.abs().cmple(Vec2::splat(LARGEST_TRANSFORM)).all();
-        some.then_some(MapOffset(pair)).ok_or("expected numbers from -1e6 to 1e6")
+        some.then_some(MapOffset(pair)).ok_or("expected two numbers from -1e6 to 1e6")
     }
 }
 
