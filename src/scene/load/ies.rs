@@ -308,6 +308,7 @@ impl<'a> Numbers<'a> {
         Ok(angles)
     }
 }
+
 /// A number for a message: one that would have many zeros by its exponent.
 fn digits(number: f64) -> String {
     let short = number == 0.0 || (1e-5..1e9).contains(&number.abs());
