@@ -23,7 +23,7 @@ pub fn body(roughness: f32, ior: f32) -> Material {
 /// A tiny plate of albedo 0.5 in the middle of a ball of radius 1 that glows with 2, lets through and absorbs, under a white sky; seen from inside or, through what
 /// the ball transmits and its holes, from outside. With what is seen: between these.
 pub fn plate_in_a_glowing_ball(opacity: f32, outside: bool) -> (Scene, [DVec3; 2]) {
-    let mut scene = empty(2, 2);
+    let mut scene = empty(4, 4);
     let distance = if outside { 4.0 } else { 0.25 };
     scene.sensor = pinhole(Vec3::Y * distance, Vec3::ZERO, Vec3::Z, 0.01);
     let ball = icosphere(3);

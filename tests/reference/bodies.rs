@@ -14,7 +14,7 @@ fn in_a_glowing_body_all_estimators_have_the_mean_of_a_formula() {
         for (seed, estimator) in estimators().into_iter().enumerate() {
             scene.integrator = Integrator::Path(estimator);
             scene.settings.seed = seed as u32;
-            for (channel, found) in means(&scene, 5000).into_iter().enumerate() {
+            for (channel, found) in means(&scene, 1250).into_iter().enumerate() {
                 println!(
                     "opacity {opacity}, from outside {outside}: {found:?} in {} to {}",
                     low[channel], high[channel]
