@@ -23,7 +23,7 @@ pub fn body(roughness: f32, ior: f32) -> Material {
 /// A tiny plate of albedo 0.5 in the middle of a ball of radius 1 that glows with 2, lets through and absorbs, under a white sky; seen from inside or, through what
 /// the ball transmits and its holes, from outside. With what is seen: between these.
 pub fn plate_in_a_glowing_ball(opacity: f32, outside: bool) -> (Scene, [DVec3; 2]) {
-    let mut scene = empty(2, 2);
+    let mut scene = empty(4, 4);
     let distance = if outside { 4.0 } else { 0.25 };
     scene.sensor = pinhole(Vec3::Y * distance, Vec3::ZERO, Vec3::Z, 0.01);
     let ball = icosphere(3);
@@ -49,7 +49,7 @@ pub fn plate_in_a_glowing_ball(opacity: f32, outside: bool) -> (Scene, [DVec3; 2
 /// A rough, glowing ball that absorbs, with a plate in it and one beside it, seen from outside.
 pub fn plate_in_a_rough_ball(width: u32, height: u32, opacity: f32) -> Scene {
     let mut scene = empty(width, height);
-    scene.sensor = pinhole(Vec3::new(0.0, 0.5, 4.0), Vec3::new(0.0, -0.25, 0.0), Vec3::Y, 40.0);
+    scene.sensor = pinhole(Vec3::new(0.0, 2.5, 2.5), Vec3::new(0.0, -0.25, 0.0), Vec3::Y, 24.0);
     let glowing = Material { emission: Vec3::new(1.0, 1.5, 2.0), opacity, ..body(0.5, 1.3) };
     add(&mut scene, icosphere(1), glowing, Affine3A::IDENTITY);
     let across = |y: f32, half: f32| quad(Vec3::new(-half, y, half), Vec3::X * 2.0 * half, Vec3::Z * -2.0 * half);

@@ -17,7 +17,7 @@ fn in_a_glowing_body_all_estimators_have_the_mean_of_a_formula() {
             scene.integrator = Integrator::Path(estimator);
             scene.settings.seed = seed as u32;
             on_every_backend(|backend| {
-                let found = total(&render(&mut backend.tracer(&scene), 2, 2, 4096, 16));
+                let found = total(&render(&mut backend.tracer(&scene), 4, 4, 1024, 16));
                 let brightness = |c: DVec3| c.element_sum() / 3.0;
                 println!("{}, opacity {opacity}, from outside {outside}: {found:?} in {low} to {high}", backend.name());
                 found.assert_within(brightness(low), brightness(high), 2e-2);

@@ -14,7 +14,7 @@ fn in_a_glowing_body_all_estimators_have_the_mean_of_a_formula() {
         for (seed, estimator) in estimators().into_iter().enumerate() {
             scene.integrator = Integrator::Path(estimator);
             scene.settings.seed = seed as u32;
-            for (channel, found) in means(&scene, 5000).into_iter().enumerate() {
+            for (channel, found) in means(&scene, 1250).into_iter().enumerate() {
                 println!(
                     "opacity {opacity}, from outside {outside}: {found:?} in {} to {}",
                     low[channel], high[channel]
@@ -33,7 +33,7 @@ fn through_a_rough_glowing_body_all_estimators_have_one_mean() {
             let mut scene = plate_in_a_rough_ball(6, 6, opacity);
             scene.integrator = Integrator::Path(estimator);
             scene.settings.seed = seed;
-            means(&scene, 1000)[0]
+            means(&scene, 1000)[2]
         };
         let expected = mean(Estimator { light_sampling: LightSampling::None, ..Estimator::default() }, 100);
         for (seed, estimator) in estimators().into_iter().enumerate() {
