@@ -13,6 +13,7 @@ mod ies;
 mod lamplight;
 mod loader;
 mod map_draft;
+mod map_file;
 mod mapped_number;
 mod material_draft;
 mod metals;
