@@ -10,7 +10,9 @@ use super::prepared_scene::Reference;
 use super::profile::photometric_intensity;
 use super::surfel::mean;
 use crate::sampling::{random4, ray_salt, uniform};
-use crate::scene::{Estimator, Integrator, LightSampling, Luminaire, Material, SampledLuminaire, Scene, one_minus_cos};
+use crate::scene::{
+    Estimator, Integrator, LightSampling, Luminaire, Material, SampledLuminaire, Scene, is_bare, one_minus_cos,
+};
 use glam::{DMat3, DVec3};
 use std::f64::consts::TAU;
 
@@ -189,7 +191,7 @@ impl Reference {
             _ => (sent.first, "falls on glass or mirrors first"),
         };
         let path = &self.scene.path;
-        let name = if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("obj")) {
+        let name = if is_bare(path) && self.scene.luminaires.len() < 2 {
             "the key light".into()
         } else {
             // In the table are those that emit.

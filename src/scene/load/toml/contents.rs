@@ -5,7 +5,9 @@ use super::radians;
 use super::tables::{ObjectTable, Scale};
 use super::values::{Matrix, Triple};
 use crate::scene::Object;
-use crate::scene::load::loader::Loader;
+use crate::scene::load::format::Format;
+use crate::scene::load::loader::{Loader, listed};
+use crate::scene::load::model::{Reading, can_be_inverted};
 use crate::scene::load::near_name::instead_of;
 use crate::scene::load::obj;
 use crate::scene::load::other_formats;
@@ -16,8 +18,8 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 use std::path::Path;
 
 impl File<'_> {
-    /// An `[[object]]`, and where it stands to every digit.
-    pub(super) fn object(&self, table: &Spanned<ObjectTable>, loader: &mut Loader) -> Result<(Object, DAffine3)> {
+    /// The objects of an `[[object]]`, and where they stand to every digit: as many as its model has.
+    pub(super) fn objects(&self, table: &Spanned<ObjectTable>, loader: &mut Loader) -> Result<Vec<(Object, DAffine3)>> {
         let object = table.get_ref();
         let to_world = self.transform(table)?;
         let turned = object.rotate.and_then(|rotate| radians::rotation(rotate.rounded()));
@@ -27,35 +29,67 @@ impl File<'_> {
             loader.warnings.push(format!("{}:{line}: {warning}", self.path.display()));
         }
         let mesh_path = self.named(&object.mesh, "an OBJ file")?;
-        if !mesh_path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("obj")) {
+        let Some(format) = Format::of(&mesh_path).filter(|format| *format != Format::SceneFile) else {
             let what = other_formats::named(&mesh_path).map(|what| format!(" ({what})")).unwrap_or_default();
             let message = format!("`{}`: a mesh has to be an .obj file{what}", object.mesh.get_ref());
             return Err(self.error(object.mesh.span(), message));
-        }
-        let how = obj::Reading {
+        };
+        let how = Reading {
             smooth: object.smooth.map(|smooth| smooth.0.to_bits()),
             smooth_if_unsaid: false,
             without_colours: object.vertex_colours == Some(false),
         };
-        let mesh = loader.mesh(&mesh_path, how).map_err(|error| match error {
+        let model = loader.model(&mesh_path, format, how).map_err(|error| match error {
+            Error::Usage(message) => self.error(object.mesh.span(), message),
             // Where the file is named helps more than where it is not.
             Error::Read { .. } => self.error(object.mesh.span(), error.to_string() + &instead_of(&mesh_path)),
             other => other,
         })?;
-        let material = match &object.material {
-            None => None,
-            Some(name) => Some(loader.material(mesh, name.get_ref()).ok_or_else(|| {
-                let message = format!(
-                    "there is no material `{}`: neither an MTL file nor a [[material]] defines it; there are {}",
-                    shortened(name.get_ref()),
-                    loader.material_names()
-                );
-                self.error(name.span(), message)
-            })?),
-        };
+        let (standing, flat) = model.standing(to_world);
+        if standing.is_empty() {
+            let message = match flat.len() {
+                0 => "nothing of it can be shown: no mesh with triangles stands anywhere in it",
+                _ => "the transform cannot be inverted: with those within the file it flattens everything",
+            };
+            return Err(self.error(object.mesh.span(), message));
+        }
+        if !flat.is_empty() {
+            let (line, _) = line_and_column(self.text, table.span().start);
+            let names = listed(flat.iter().map(|placed| &*placed.name));
+            let why = "with the transform of this [[object]] theirs cannot be inverted";
+            loader.warnings.push(format!("{}:{line}: {names} left out: {why}", self.path.display()));
+        }
+        let others = [("camera", model.cameras.len()), ("luminaire", model.luminaires.len())];
+        let others: Vec<String> =
+            others.iter().filter(|(_, count)| *count > 0).map(|(what, count)| format!("{count} {what}(s)")).collect();
+        if !others.is_empty() {
+            loader.notes.push(format!(
+                "{}: of its {} none counts here: a scene file has its own, which `luminaire scene` writes for the model",
+                mesh_path.display(),
+                others.join(" and ")
+            ));
+        }
         let stem = || obj::file_name(Path::new(mesh_path.file_stem().unwrap_or_default()));
         let name = object.name.clone().unwrap_or_else(stem);
-        Ok((Object { name, mesh, object_to_world: to_world.as_affine3a(), material }, to_world))
+        let is_one = model.placed.len() == 1;
+        let mut objects = Vec::new();
+        for (placed, place) in standing {
+            let mesh = placed.mesh;
+            let material = match &object.material {
+                None => None,
+                Some(name) => Some(loader.material(mesh, name.get_ref()).ok_or_else(|| {
+                    let message = format!(
+                        "there is no material `{}`: neither an MTL file nor a [[material]] defines it; there are {}",
+                        shortened(name.get_ref()),
+                        loader.material_names()
+                    );
+                    self.error(name.span(), message)
+                })?),
+            };
+            let name = if is_one { name.clone() } else { format!("{name}/{}", placed.name) };
+            objects.push((Object { name, mesh, object_to_world: place.as_affine3a(), material }, place));
+        }
+        Ok(objects)
     }
 
     fn transform(&self, table: &Spanned<ObjectTable>) -> Result<DAffine3> {
@@ -83,12 +117,7 @@ impl File<'_> {
                 DAffine3::from_scale_rotation_translation(scale, rotation, translation)
             }
         };
-        let rounded = to_world.as_affine3a();
-        let m = to_world.matrix3;
-        let edges = m.x_axis.length() * m.y_axis.length() * m.z_axis.length();
-        // The volume of the transformed unit cube against the box of the same edges: 1e-6 is where f32 loses all of it.
-        let flat = m.determinant().abs() <= 1e-6 * edges;
-        if flat || !rounded.is_finite() || !rounded.inverse().is_finite() {
+        if !can_be_inverted(&to_world) {
             return Err(self.error(table.span(), "the transform cannot be inverted: it flattens the object"));
         }
         Ok(to_world)
