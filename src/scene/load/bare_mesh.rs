@@ -69,7 +69,7 @@ pub(super) fn load(path: &Path, format: Format, choices: &Choices) -> Result<Bar
 }
 
 /// A scene of a model that the loader has read.
-fn build(path: &Path, model: &Model, mut loader: Loader, choices: &Choices) -> Result<BareMesh> {
+pub(super) fn build(path: &Path, model: &Model, mut loader: Loader, choices: &Choices) -> Result<BareMesh> {
     let is_smoothed = model.placed.iter().any(|placed| loader.smoothed[placed.mesh as usize]);
     let smooth = choices.smooth.or(is_smoothed.then_some(SMOOTH));
     let up = choices.up.unwrap_or(Up::Y);

@@ -49,19 +49,23 @@ pub(super) struct Loader {
 
 /// What is known of a mesh beside its triangles.
 #[derive(Debug, Default)]
-struct AboutMesh {
-    place: FilePlace,
-    smoothed: bool,
-    named: Arc<HashMap<String, u32>>,
-    without_uv: Vec<WithoutUv>,
+pub(super) struct AboutMesh {
+    /// Where it lies in the coordinates of its file.
+    pub place: FilePlace,
+    /// Whether [`Reading::smooth`] made a difference.
+    pub smoothed: bool,
+    /// The materials of its file by name; an object may ask for one of them.
+    pub named: Arc<HashMap<String, u32>>,
+    /// Its materials that some triangles without texture coordinates have.
+    pub without_uv: Vec<WithoutUv>,
 }
 
 /// Faces of one material that lack texture coordinates.
 #[derive(Debug)]
-struct WithoutUv {
-    material: u32,
-    /// `FILE:LINE`.
-    at: String,
+pub(super) struct WithoutUv {
+    pub material: u32,
+    /// `FILE:LINE` of the first of them.
+    pub at: String,
 }
 
 impl Loader {
@@ -155,7 +159,7 @@ impl Loader {
     }
 
     /// Keeps a mesh, whose triangles have the loader's materials, and gives its number; one without triangles is none.
-    fn add(&mut self, mesh: Mesh, about: AboutMesh) -> Option<u32> {
+    pub(super) fn add(&mut self, mesh: Mesh, about: AboutMesh) -> Option<u32> {
         if mesh.triangles.is_empty() {
             return None;
         }
@@ -369,6 +373,14 @@ impl Loader {
         }
         self.libraries.insert(identity, materials.clone());
         Ok(materials)
+    }
+}
+
+#[cfg(test)]
+impl Loader {
+    /// Takes this for what a model file of this name has.
+    pub(super) fn pretend(&mut self, path: &Path, how: Reading, model: Model) {
+        self.models.insert((identity(path), how), Arc::new(model));
     }
 }
 

@@ -176,3 +176,6 @@ fn own_name(name: &str, taken: &mut HashSet<String>) -> String {
     taken.insert(own.clone());
     own
 }
+
+#[cfg(test)]
+mod tests;

@@ -13,7 +13,7 @@ use super::choices::{Choices, Sky, Up};
 use super::format::Format;
 use super::obj::file_name;
 use super::{finish, ground, with_what_is_there};
-use crate::scene::{Camera, Luminaire, Projection, Scene, Sensor};
+use crate::scene::{Camera, Projection, Scene, Sensor};
 use crate::{Error, Result};
 use glam::{Vec2, Vec3};
 use std::path::Path;
@@ -54,7 +54,7 @@ pub fn scene_file(path: &Path, choices: &Choices, folder: &Path) -> Result<Scene
 }
 
 /// The scene file of a model; `parts` are comments of what it consists of.
-fn text(bare: &BareMesh, parts: &str, folder: &Path) -> Result<String> {
+pub(super) fn text(bare: &BareMesh, parts: &str, folder: &Path) -> Result<String> {
     let mut text = head(bare);
     text += &film(&bare.scene);
     text += &sensors(&bare.scene);
@@ -137,10 +137,10 @@ fn sensor(scene: &Scene, sensor: &Sensor, name: Option<&str>) -> String {
         None => ("# name", "\"front\"".into()),
         Some(name) => ("name", quoted(name)),
     };
-    let shift = if sensor.shift == Vec2::ZERO { "# shift" } else { "shift" };
-    let [x, y] = sensor.shift.to_array().map(number);
-    // A shift of 0 has been written so from the start.
-    let shift = (shift, if sensor.shift == Vec2::ZERO { "[0, 0]".into() } else { format!("[{x}, {y}]") });
+    let shift = match sensor.shift {
+        Vec2::ZERO => ("# shift", "[0, 0]".to_owned()),
+        Vec2 { x, y } => ("shift", format!("[{}, {}]", number(x), number(y))),
+    };
     if several { "\n[[sensor]]\n" } else { "\n[sensor]\n" }.to_owned()
         + &keys(&[
             kind,

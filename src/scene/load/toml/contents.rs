@@ -123,3 +123,61 @@ impl File<'_> {
         Ok(to_world)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::build::{cube, pinhole};
+    use crate::scene::load::loader::AboutMesh;
+    use crate::scene::load::model::{Model, Placed};
+    use crate::scene::{Camera, widen};
+    use glam::Vec3;
+
+    /// The objects of an `[[object]]` with these keys whose file has these, and what is said.
+    fn read(keys: &str, placed: &[(DAffine3, &str)]) -> (Result<Vec<(Object, DAffine3)>>, Loader) {
+        let text = format!("[[object]]\nmesh = \"a.obj\"\n{keys}\n[[material]]\nname = \"red\"\n");
+        let file = File { path: Path::new("a.toml"), text: &text };
+        let tables = file.parse().unwrap();
+        let mut loader = Loader::new(file.materials(&tables.material).unwrap());
+        let mesh = loader.add(cube(), AboutMesh::default()).unwrap();
+        let placed = placed.iter().map(|(matrix, name)| Placed { mesh, matrix: *matrix, name: (*name).into() });
+        let sensor = pinhole(Vec3::Z, Vec3::ZERO, Vec3::Y, 40.0);
+        let cameras = vec![(Camera { name: "c".into(), sensor }, DAffine3::IDENTITY)];
+        let model = Model { placed: placed.collect(), cameras, ..Model::default() };
+        loader.pretend(Path::new("a.obj"), Reading::default(), model);
+        (file.objects(&tables.object[0], &mut loader), loader)
+    }
+
+    #[test]
+    fn an_object_moves_all_that_its_file_has() {
+        let there = |x: f64| DAffine3::from_translation(DVec3::new(x, 0.0, 0.0));
+        let mirrored = DAffine3::from_scale(DVec3::new(-1.0, 1.0, 2.0));
+        let keys = "name = \"both\"\nmaterial = \"red\"\nscale = 2\ntranslate = [0, 1, 0]";
+        let (objects, loader) = read(keys, &[(there(3.0), "one"), (mirrored, "two")]);
+        let objects = objects.unwrap();
+        let names: Vec<&str> = objects.iter().map(|(object, _)| &*object.name).collect();
+        assert_eq!(names, ["both/one", "both/two"]);
+        let [(one, place), (two, _)] = &objects[..] else { panic!("{objects:?}") };
+        assert_eq!(place.translation, DVec3::new(6.0, 1.0, 0.0));
+        assert_eq!(one.object_to_world, place.as_affine3a());
+        let two_to_world = widen(two.object_to_world);
+        assert_eq!(two_to_world.matrix3, DMat3::from_diagonal(DVec3::new(-2.0, 2.0, 4.0)));
+        assert_eq!((one.material, two.material, one.mesh), (two.material, Some(1), two.mesh));
+        assert!(loader.notes.len() == 1 && loader.notes[0].contains("1 camera(s)"), "{:?}", loader.notes);
+        // One alone has the object's name.
+        let (objects, _) = read("", &[(there(3.0), "one")]);
+        assert_eq!(objects.unwrap()[0].0.name, "a");
+    }
+
+    #[test]
+    fn what_cannot_be_shown_is_said() {
+        let flat = DAffine3::from_scale(DVec3::new(1.0, 0.0, 1.0));
+        let (objects, loader) = read("", &[(flat, "one"), (DAffine3::IDENTITY, "two")]);
+        assert_eq!(objects.unwrap().len(), 1);
+        assert!(loader.warnings[0].starts_with("a.toml:1: `one` left out"), "{:?}", loader.warnings);
+        for (placed, words) in [(&[(flat, "one")][..], "flattens everything"), (&[], "no mesh with triangles")] {
+            let error = read("", placed).0.unwrap_err().to_string();
+            assert!(error.contains(words) && error.contains("a.toml:2:8"), "{error}");
+        }
+    }
+}
