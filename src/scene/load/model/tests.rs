@@ -272,3 +272,54 @@ fn cameras_and_luminaires_come_back_from_a_scene_file_to_the_last_bit() {
         assert_eq!(read, bare);
     }
 }
+
+/// Lamps and bodies that overlap or touch, mirrored ones among them, become what they become in a scene file that places them one by one.
+#[test]
+fn what_overlaps_becomes_what_it_becomes_in_a_scene_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.obj");
+    let mut text = String::from("mtllib a.mtl\nusemtl m\n");
+    let cube = cube();
+    cube.positions.iter().for_each(|p| text += &format!("v {} {} {}\n", p.x, p.y, p.z));
+    for triangle in &cube.triangles {
+        let [a, b, c] = triangle.vertices.map(|vertex| vertex + 1);
+        text += &format!("f {a} {b} {c}\n");
+    }
+    std::fs::write(&path, text).unwrap();
+    let beside = DAffine3::from_scale(DVec3::new(-1.0, 1.0, 1.0)) * at(2.0 + 1e-5, 0.0, 0.0);
+    let placed = [("one", DAffine3::IDENTITY), ("again", DAffine3::IDENTITY), ("beside", beside), ("far", mirrored())];
+    for (mtl, word) in [("Kd 0 0 0\nKe 1 1 1\n", "lamp"), ("Kd 0 0 0\nKs 1 1 1\nTf 1 1 1\nNi 1.5\nillum 7\n", "glass")]
+    {
+        std::fs::write(folder.path().join("a.mtl"), format!("newmtl m\n{mtl}")).unwrap();
+        let mut loader = Loader::new(Vec::new());
+        let mesh = loader.model(&path, Format::Obj, Reading::default()).unwrap().placed[0].mesh;
+        let placed_so = placed.map(|(name, matrix)| Placed { mesh, matrix, name: name.into() });
+        let model = Model { placed: placed_so.into(), ..Model::default() };
+        let choices = Choices { sky: Some(Sky::Studio), ground: Some(false), fill: Some(false), ..Choices::default() };
+        let mut bare = bare_mesh::build(&path, &model, loader, &choices).unwrap().scene;
+        crate::scene::load::finish(&mut bare).unwrap();
+        let row = |matrix: &DAffine3, row: usize| {
+            let [x, y, z] = matrix.matrix3.row(row).to_array();
+            format!("[{x:?}, {y:?}, {z:?}, {:?}]", matrix.translation[row])
+        };
+        let object = |(name, matrix): &(&str, DAffine3)| {
+            let [x, y, z] = [0, 1, 2].map(|index| row(matrix, index));
+            format!("[[object]]\nmesh = \"a.obj\"\nname = \"{name}\"\nmatrix = [{x}, {y}, {z}]\n")
+        };
+        let file = folder.path().join("a.toml");
+        let objects: String = placed.iter().map(object).collect();
+        std::fs::write(&file, format!("[environment]\nsky = \"studio\"\n{objects}")).unwrap();
+        let scene = crate::scene::load(&file).unwrap();
+        let [found, expected] = [&bare, &scene].map(|scene| crate::part::Provenance::of(scene).digests);
+        for what in ["geometry", "materials"] {
+            assert_eq!(found[what], expected[what], "{what}: {:?} {:?}", bare.warnings, scene.warnings);
+        }
+        let own = |scene: &Scene| {
+            let said = scene.warnings.iter().filter(|warning| !warning.contains("no [sensor]"));
+            said.map(|warning| warning.replace("a.toml", "a.obj")).collect::<Vec<_>>()
+        };
+        assert_eq!(own(&bare), own(&scene));
+        assert!(bare.warnings.iter().any(|warning| warning.contains(word)), "{:?}", bare.warnings);
+        assert_eq!(scene.objects.len(), bare.objects.len());
+    }
+}
