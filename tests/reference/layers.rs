@@ -138,11 +138,11 @@ fn metals_of_extreme_indices_have_a_colour() {
     }
     assert_eq!([1e-4, 0.3, 1.0].map(|cosine| conductor_reflectance(1.0, 0.0, cosine)), [0.0; 3], "as the air");
     assert!((conductor_average(0.0, 0.0) - 1.0).abs() < 1e-12 && conductor_average(1.0, 0.0) < 2e-2);
-    let conductor = Some([Vec3::new(0.0, 1.0, 0.2), Vec3::new(0.0, 0.0, 3.9)]);
+    let metal = [Vec3::new(0.0, 1.0, 0.2), Vec3::new(0.0, 0.0, 3.9)];
     for roughness in [0.0, 0.3, 1.0] {
-        let p = Physical { metallic: 1.0, roughness, conductor, ..Physical::default() };
+        let p = Physical { metallic: 1.0, roughness, conductor: Some(metal), ..Physical::default() };
         let albedo = albedo_of(&physical_surfel(&p, false, true), tilted(40.0), 4_000);
-        let [eta, k] = conductor.expect("one").map(|v| v.as_dvec3());
+        let [eta, k] = metal.map(|v| v.as_dvec3());
         let smooth = fresnel_conductor([eta, k], tilted(40.0).z);
         assert!(
             (albedo - smooth).abs().max_element() < if roughness == 0.0 { 1e-9 } else { 0.08 },
