@@ -10,9 +10,7 @@ use super::prepared_scene::Reference;
 use super::profile::photometric_intensity;
 use super::surfel::mean;
 use crate::sampling::{random4, ray_salt, uniform};
-use crate::scene::{
-    Estimator, Integrator, LightSampling, Luminaire, Material, SampledLuminaire, Scene, is_bare, one_minus_cos,
-};
+use crate::scene::{Estimator, Integrator, LightSampling, Luminaire, Material, SampledLuminaire, Scene, one_minus_cos};
 use glam::{DMat3, DVec3};
 use std::f64::consts::TAU;
 
@@ -191,7 +189,9 @@ impl Reference {
             _ => (sent.first, "falls on glass or mirrors first"),
         };
         let path = &self.scene.path;
-        let name = if is_bare(path) && self.scene.luminaires.len() < 2 {
+        // Of a model; a scene in code has no ending.
+        let is_bare = path.extension().is_some_and(|ending| !ending.eq_ignore_ascii_case("toml"));
+        let name = if is_bare && self.scene.luminaires.len() < 2 {
             "the key light".into()
         } else {
             // In the table are those that emit.

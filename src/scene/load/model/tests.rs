@@ -288,7 +288,8 @@ fn what_overlaps_becomes_what_it_becomes_in_a_scene_file() {
     std::fs::write(&path, text).unwrap();
     let beside = DAffine3::from_scale(DVec3::new(-1.0, 1.0, 1.0)) * at(2.0 + 1e-5, 0.0, 0.0);
     let placed = [("one", DAffine3::IDENTITY), ("again", DAffine3::IDENTITY), ("beside", beside), ("far", mirrored())];
-    for (mtl, word) in [("Kd 0 0 0\nKe 1 1 1\n", "lamp"), ("Kd 0 0 0\nKs 1 1 1\nTf 1 1 1\nNi 1.5\nillum 7\n", "glass")]
+    for (mtl, word) in
+        [("Kd 0 0 0\nKe 1 1 1\n", "that emit"), ("Kd 0 0 0\nKs 1 1 1\nTf 1 1 1\nNi 1.5\nillum 7\n", "glass")]
     {
         std::fs::write(folder.path().join("a.mtl"), format!("newmtl m\n{mtl}")).unwrap();
         let mut loader = Loader::new(Vec::new());

@@ -1,7 +1,6 @@
 //! The luminaires without an area as tables: the model's own, the lamp at the camera, and what others there may be.
 
-use super::keys;
-use super::words::{number, point, quoted, triple};
+use super::words::{keys, number, point, quoted, triple};
 use crate::scene::Luminaire;
 use crate::scene::load::bare_mesh::BareMesh;
 use glam::DVec3;

@@ -17,7 +17,7 @@ use crate::scene::{Camera, Projection, Scene, Sensor};
 use crate::{Error, Result};
 use glam::{Vec2, Vec3};
 use std::path::Path;
-use words::{exact, number, path as named, point, quoted, triple};
+use words::{exact, keys, number, path as named, point, quoted, triple};
 
 /// A bare model's scene file.
 #[derive(Debug)]
@@ -68,15 +68,6 @@ pub(super) fn text(bare: &BareMesh, parts: &str, folder: &Path) -> Result<String
     text += &materials::tables(&bare.scene, &bare.loader.drafts, folder)?;
     text += &luminaires::tables(bare);
     Ok(text)
-}
-
-/// Lines of keys with their meaning, the latter in one column.
-fn keys(lines: &[(&str, String, &str)]) -> String {
-    let lines = lines.iter().map(|(key, value, meaning)| {
-        let said = format!("{key} = {value}");
-        format!("{said:39}  # {meaning}").trim_end().trim_end_matches("  #").trim_end().to_owned() + "\n"
-    });
-    lines.collect()
 }
 
 fn head(bare: &BareMesh) -> String {
