@@ -11,8 +11,6 @@ const NEAREST: f64 = 2e-6;
 const PARALLEL: f64 = 1e-6;
 /// The volume of a transformed cube against the box of the same edges: below it single precision loses all of it.
 const FLAT: f64 = 1e-6;
-/// A direction is rounded so often, at most, until it is the same again.
-const ROUNDINGS: usize = 16;
 
 /// What a model file has; an OBJ file one mesh and nothing else.
 #[derive(Debug, Default)]
@@ -159,13 +157,19 @@ pub(super) fn said(point: Vec3, origin: DVec3) -> Vec3 {
     (point.as_dvec3() + origin - origin).as_vec3()
 }
 
-/// A unit vector in single precision; who makes it one again gets the same, as a scene file does.
+/// A unit vector in single precision; who makes it one again, as a scene file does, gets the same. Of a hundredth of those that are merely rounded that is not true, but of one
+/// beside them.
 fn unit(direction: DVec3) -> Option<Vec3> {
-    let mut unit = direction.try_normalize()?.as_vec3();
-    for _ in 0..ROUNDINGS {
-        unit = unit.as_dvec3().normalize().as_vec3();
-    }
-    Some(unit)
+    let rounded = direction.try_normalize()?.as_vec3();
+    let beside = (0..3).rev().flat_map(|axis| {
+        [1, u32::MAX].map(|step| {
+            let mut next = rounded;
+            next[axis] = f32::from_bits(next[axis].to_bits().wrapping_add(step));
+            next
+        })
+    });
+    let stays = |unit: &Vec3| unit.as_dvec3().normalize().as_vec3() == *unit;
+    std::iter::once(rounded).chain(beside).find(stays).or(Some(rounded))
 }
 
 /// A name that is not taken, and is from now on.

@@ -324,3 +324,18 @@ fn what_overlaps_becomes_what_it_becomes_in_a_scene_file() {
         assert_eq!(scene.objects.len(), bare.objects.len());
     }
 }
+
+/// A scene file makes directions unit vectors again.
+#[test]
+fn unit_vectors_stay_when_they_are_made_ones_again() {
+    let mut bits = 1u32;
+    let mut next = || {
+        bits = bits.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        f64::from(bits >> 8) / f64::from(1 << 24) - 0.5
+    };
+    for _ in 0..20_000 {
+        let found = unit(DVec3::new(next(), next(), next())).unwrap();
+        assert_eq!(found.as_dvec3().normalize().as_vec3(), found);
+    }
+    assert_eq!([DVec3::ZERO, DVec3::NAN, DVec3::X * f64::INFINITY].map(unit), [None; 3]);
+}
