@@ -1,17 +1,16 @@
-//! Images from disk, as textures and environments need them: OpenEXR, and whatever the `image` crate decodes.
+//! Images from disk or from memory, as textures and environments need them: OpenEXR, and whatever the `image` crate decodes.
 
 use super::encoding::{Curve, Encoding};
-use super::first_bytes::first_bytes;
 use super::pixels::{self, io_in_words};
 use super::radiance::{self, Radiance};
+use super::source::Source;
 use super::srgb::linear;
 use super::{foreign, icc, openexr, png_colours};
 use crate::memory::available;
 use glam::{DMat3, DVec3};
 use half::f16;
-use image::{DynamicImage, ImageDecoder, ImageError, ImageReader, Limits};
+use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 use rayon::prelude::*;
-use std::path::Path;
 use std::sync::LazyLock;
 
 /// Most texels in a row or a column.
@@ -63,22 +62,31 @@ enum Texels {
 }
 
 impl ImageFile {
-    /// Reads a file; its content says which format it is, and its ending only where the content does not. An image of more than
+    /// Reads a picture; its content says which format it is, and the ending of its name only where the content does not. An image of more than
     /// `most` texels is refused as soon as its header says the size, in the words of `too_many`, which is given that number.
     ///
     /// # Errors
-    /// In words that can follow the file's name: it cannot be read, is no image, is damaged, or is too large.
-    pub(crate) fn open(path: &Path, most: u64, too_many: impl FnOnce(u64) -> String) -> Result<Self, String> {
-        let start = first_bytes(path)?;
+    /// In words that can follow its name: it cannot be read, is no image, is damaged, or is too large.
+    pub(crate) fn open<'a>(
+        source: impl Into<Source<'a>>,
+        most: u64,
+        too_many: impl FnOnce(u64) -> String,
+    ) -> Result<Self, String> {
+        let source = source.into();
+        let start = source.first_bytes()?;
         if start.starts_with(&openexr::MAGIC) {
-            return Self::open_exr(path, most, too_many);
+            return Self::open_exr(source, most, too_many);
         }
         if radiance::begins(&start) {
-            return Self::open_radiance(path, most, too_many);
+            return Self::open_radiance(source, most, too_many);
         }
         let mut warnings = Vec::new();
-        let mut reader =
-            ImageReader::open(path).and_then(ImageReader::with_guessed_format).map_err(|e| e.to_string())?;
+        let stream = || source.open().map_err(|e| e.to_string());
+        let mut reader = ImageReader::new(stream()?);
+        if let Ok(format) = ImageFormat::from_path(source.name()) {
+            reader.set_format(format);
+        }
+        let mut reader = reader.with_guessed_format().map_err(|e| e.to_string())?;
         let mut limits = Limits::default();
         limits.max_image_width = Some(LARGEST_SIDE);
         limits.max_image_height = Some(LARGEST_SIDE);
@@ -86,8 +94,8 @@ impl ImageFile {
         reader.limits(limits.clone());
         let mut decoder = reader.into_decoder().map_err(|error| match error {
             ImageError::Limits(_) => too_large(),
-            error => foreign::named(path, &start)
-                .or_else(|| foreign::unknown(path, &start))
+            error => foreign::named(source.name(), &start)
+                .or_else(|| foreign::unknown(source.name(), &start))
                 .unwrap_or_else(|| in_words(error)),
         })?;
         let (width, height) = decoder.dimensions();
@@ -110,7 +118,7 @@ impl ImageFile {
             return Err("it has no texels".into());
         }
         let colours = match profile {
-            _ if start.starts_with(&png_colours::MAGIC) => png_colours::encoding(path, &mut warnings)?,
+            _ if start.starts_with(&png_colours::MAGIC) => png_colours::encoding(stream()?, &mut warnings)?,
             Some(profile) => icc::encoding(&profile, &mut warnings),
             None => Encoding::SRGB,
         };
@@ -142,9 +150,9 @@ impl ImageFile {
         Ok(ImageFile { width, height, has_alpha, warnings, cube: false, premultiplied: false, texels, table, matrix })
     }
 
-    fn open_radiance(path: &Path, most: u64, too_many: impl FnOnce(u64) -> String) -> Result<Self, String> {
+    fn open_radiance(source: Source, most: u64, too_many: impl FnOnce(u64) -> String) -> Result<Self, String> {
         let mut warnings = Vec::new();
-        let file = Radiance::open(path, &mut warnings)?;
+        let file = Radiance::open(source, &mut warnings)?;
         let (width, height) = (file.width, file.height);
         let texels = u64::from(width) * u64::from(height);
         // Three channels as they are decoded.
@@ -174,8 +182,8 @@ impl ImageFile {
         })
     }
 
-    fn open_exr(path: &Path, most: u64, too_many: impl FnOnce(u64) -> String) -> Result<Self, String> {
-        let file = openexr::Opened::new(path)?;
+    fn open_exr(source: Source, most: u64, too_many: impl FnOnce(u64) -> String) -> Result<Self, String> {
+        let file = openexr::Opened::new(source)?;
         let (width, height) = file.size();
         let texels = u64::from(width) * u64::from(height);
         let stored = texels * if file.has_alpha() { 16 } else { 12 };

@@ -7,8 +7,7 @@ use super::primaries::Primaries;
 use glam::DVec2;
 use moxcms::TransferCharacteristics;
 use png::{CodingIndependentCodePoints, Info, SourceChromaticities};
-use std::io::BufReader;
-use std::path::Path;
+use std::io::{BufRead, Seek};
 
 /// Most bytes that chunks in front of the pixels may take.
 const MOST_BYTES: usize = 16 << 20;
@@ -19,10 +18,9 @@ pub(super) const MAGIC: [u8; 4] = *b"\x89PNG";
 /// Reads what stands in front of the pixels.
 ///
 /// # Errors
-/// In words that can follow the file's name: the file is damaged, or its colours are of a kind that is not read here.
-pub(super) fn encoding(path: &Path, warnings: &mut Vec<String>) -> Result<Encoding, String> {
-    let file = std::fs::File::open(path).map_err(|e| e.to_string())?;
-    let decoder = png::Decoder::new_with_limits(BufReader::new(file), png::Limits { bytes: MOST_BYTES });
+/// In words that can follow the picture's name: it is damaged, or its colours are of a kind that is not read here.
+pub(super) fn encoding(stream: impl BufRead + Seek, warnings: &mut Vec<String>) -> Result<Encoding, String> {
+    let decoder = png::Decoder::new_with_limits(stream, png::Limits { bytes: MOST_BYTES });
     let reader = decoder.read_info().map_err(|e| e.to_string())?;
     said(reader.info(), warnings)
 }

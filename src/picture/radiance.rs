@@ -2,19 +2,21 @@
 //! The `image` crate decodes the scanlines.
 
 use super::primaries::Primaries;
+use super::source::{Source, Stream};
 use glam::{DMat3, DVec2, DVec3};
 use image::codecs::hdr::HdrDecoder;
 use image::{ImageDecoder, ImageError};
-use std::io::{BufRead, BufReader, Cursor, Read};
-use std::path::Path;
+use std::io::{BufRead, Cursor, Read};
 
 /// Longest head that is read: programs write the history of a picture into it.
 const LONGEST_HEAD: u64 = 1 << 20;
 
 /// A file of which the head was read.
 #[derive(Debug)]
-pub(super) struct Radiance {
-    file: BufReader<std::fs::File>,
+pub(super) struct Radiance<'a> {
+    file: Box<dyn Stream + 'a>,
+    /// Its bytes, the head included.
+    bytes: u64,
     /// Columns and rows of the picture.
     pub width: u32,
     /// See `width`.
@@ -44,13 +46,15 @@ pub(super) fn begins(start: &[u8]) -> bool {
     start.starts_with(b"#?")
 }
 
-impl Radiance {
+impl<'a> Radiance<'a> {
     /// Reads the head of a file. What it says and is not followed is a warning.
     ///
     /// # Errors
     /// In words that can follow the file's name.
-    pub(super) fn open(path: &Path, warnings: &mut Vec<String>) -> Result<Self, String> {
-        let mut file = BufReader::new(std::fs::File::open(path).map_err(|e| e.to_string())?);
+    pub(super) fn open(source: impl Into<Source<'a>>, warnings: &mut Vec<String>) -> Result<Self, String> {
+        let source = source.into();
+        let mut file = source.open().map_err(|e| e.to_string())?;
+        let bytes = source.len().map_err(|e| e.to_string())?;
         let mut left = LONGEST_HEAD;
         let mut multiplied = DVec3::ONE;
         let mut matrix = None;
@@ -109,13 +113,13 @@ impl Radiance {
         }
         let Scanlines { length, number, columns, .. } = scanlines;
         let (width, height) = if columns { (number, length) } else { (length, number) };
-        Ok(Radiance { file, width, height, scanlines, multiplied, matrix })
+        Ok(Radiance { file, bytes, width, height, scanlines, multiplied, matrix })
     }
 
     /// Whether the file is long enough for its scanlines, none of which has fewer bytes than its first pixel: a small file never asks for much
     /// memory.
     pub(super) fn is_long_enough(&self) -> bool {
-        self.file.get_ref().metadata().is_ok_and(|about| about.len() >= 4 * u64::from(self.scanlines.number))
+        self.bytes >= 4 * u64::from(self.scanlines.number)
     }
 
     /// Radiance, and alpha of 1, of every pixel, rows from the top.

@@ -1,10 +1,10 @@
 //! Pictures from disk, in any format that can be read.
 
 use super::decode::ImageFile;
-use super::first_bytes::first_bytes;
 use super::openexr::{self, Opened};
 use super::pfm;
 use super::pixels::{MOST_PIXELS, Picture};
+use super::source::Source;
 use crate::{Error, Result};
 use std::path::Path;
 
@@ -18,7 +18,7 @@ pub fn read(path: &Path) -> Result<Picture> {
 }
 
 fn decode(path: &Path) -> std::result::Result<Picture, String> {
-    let start = first_bytes(path)?;
+    let start = Source::File(path).first_bytes()?;
     match start[..] {
         [] => return Err("it is empty".into()),
         _ if start.starts_with(&openexr::MAGIC) => return Opened::new(path)?.picture(),

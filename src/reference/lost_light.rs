@@ -189,7 +189,9 @@ impl Reference {
             _ => (sent.first, "falls on glass or mirrors first"),
         };
         let path = &self.scene.path;
-        let name = if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("obj")) {
+        // Of a model; a scene in code has no ending.
+        let is_bare = path.extension().is_some_and(|ending| !ending.eq_ignore_ascii_case("toml"));
+        let name = if is_bare && self.scene.luminaires.len() < 2 {
             "the key light".into()
         } else {
             // In the table are those that emit.

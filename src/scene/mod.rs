@@ -43,7 +43,7 @@ pub use estimator::{
 pub use filter::Filter;
 pub use first_view::{FirstView, Side};
 pub use light_tree::LightTree;
-pub use load::{Choices, SceneFile, Sky, Up, load, load_with, metal_name, scene_file, use_camera};
+pub use load::{Choices, SceneFile, Sky, Up, is_bare, is_scene, load, load_with, metal_name, scene_file, use_camera};
 pub use luminaire::{LEAST_ANGLE, Luminaire, one_minus_cos, photometric_frame, spot_edge};
 pub use luminaire_table::{EmissiveTriangle, LuminaireTable, SampledLuminaire};
 pub use material::{BumpMap, Maps, Material, NormalMap};

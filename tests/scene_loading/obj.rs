@@ -150,8 +150,8 @@ fn a_file_that_is_not_there() {
 
 #[test]
 fn an_ending_that_is_no_scene() {
-    for name in ["mesh.ply", "mesh", "mesh.obj.gz", ""] {
-        let error = Folder::new().with("mesh.ply", TRIANGLE).with("mesh", TRIANGLE).error(name);
+    for name in ["mesh.off", "mesh", "mesh.obj.gz", ""] {
+        let error = Folder::new().with("mesh.off", TRIANGLE).with("mesh", TRIANGLE).error(name);
         let Error::Usage(message) = &error else { panic!("{error}") };
         assert!(message.contains(".toml") && message.contains(".obj"), "{message}");
         assert_eq!(error.exit_code(), 2);

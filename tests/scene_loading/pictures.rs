@@ -264,9 +264,14 @@ fn formats_that_are_not_read_say_what_to_convert_with() {
         assert!(words.iter().all(|word| error.contains(word)), "{error}");
     }
     for (name, content, words) in [
-        ("a.glb", &b"glTF\x02"[..], ["glTF", "Blender"]),
+        ("a.glb", &b"glTF\x02"[..], ["glTF (.glb), which is not read yet", "Blender"]),
+        ("a.obj", b"glTF\x02", ["glTF (.glb), which is not read yet", "Wavefront"]),
+        ("a.gltf", b"\xef\xbb\xbf{\"asset\": {}}", ["glTF (.gltf), which is not read yet", "Wavefront"]),
+        ("a.gltf", b"", ["glTF (.gltf), which is not read yet", "Wavefront"]),
+        ("a.obj", b"Kaydara FBX Binary  \0", ["FBX", "Wavefront"]),
+        ("a.obj", b"version https://git-lfs.github.com/spec/v1\n", ["Git LFS", "git lfs pull"]),
         ("a.fbx", b"", ["FBX", "Wavefront"]),
-        ("a.ply", b"ply\nformat ascii 1.0\n", ["PLY", "MeshLab"]),
+        ("a.ply", b"ply\nformat ascii 1.0\n", ["PLY, which is not read yet", "MeshLab"]),
         ("a.xml", b"<scene version=\"3.0.0\">", ["Mitsuba", ".toml"]),
         ("a.pbrt", b"", ["pbrt", ".toml"]),
     ] {

@@ -158,8 +158,11 @@ fn only_a_bare_model_is_written_down() {
     let folder = scene("");
     let error = scene_file(&folder.path("scene.toml"), &Choices::default(), &folder.path("")).unwrap_err();
     assert!(error.exit_code() == 2 && error.to_string().contains("a scene file already"), "{error}");
-    let error = scene_file(&folder.path("x.ply"), &Choices::default(), &folder.path("")).unwrap_err();
-    assert!(error.exit_code() == 2 && error.to_string().contains(".obj"), "{error}");
+    let folder = folder.with("x.ply", "ply\n").with("x.off", "OFF\n");
+    for name in ["x.ply", "x.off"] {
+        let error = scene_file(&folder.path(name), &Choices::default(), &folder.path("")).unwrap_err();
+        assert!(error.exit_code() == 2 && error.to_string().contains(".obj"), "{error}");
+    }
     let error = scene_file(&folder.path("mash.obj"), &Choices::default(), &folder.path("")).unwrap_err();
     assert!(error.exit_code() == 1 && error.to_string().contains("there is mesh.obj"), "{error}");
 }

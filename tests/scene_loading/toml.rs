@@ -257,7 +257,9 @@ fn small_and_large_transforms_are_fine() {
 #[test]
 fn a_mesh_that_is_missing_or_wrong_is_named() {
     toml_fails("\n[[object]]\nmesh = \"no.obj\"\n", (3, 8), &["no.obj", "No such file"]);
-    toml_fails("[[object]]\nmesh = \"mesh.ply\"\n", (2, 8), &["mesh.ply", ".obj"]);
+    toml_fails("[[object]]\nmesh = \"mesh.off\"\n", (2, 8), &["mesh.off", ".obj"]);
+    toml_fails("[[object]]\nmesh = \"no.glb\"\n", (2, 8), &["no.glb", "No such file"]);
+    toml_fails("[[object]]\nmesh = \"scene.toml\"\n", (2, 8), &["scene.toml", ".obj"]);
     let folder = obj("v 0 0 0\nv 0 0 nan\n").with("scene.toml", "[[object]]\nmesh = \"mesh.obj\"\n");
     folder.fails_at("scene.toml", "mesh.obj", (2, 0), &["not finite"]);
 }

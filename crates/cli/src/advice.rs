@@ -236,7 +236,7 @@ fn ends_with(word: &str, endings: &[&str]) -> bool {
 }
 
 fn is_scene(word: &str) -> bool {
-    ends_with(word, &["toml", "obj"])
+    luminaire::scene::is_scene(Path::new(word))
 }
 
 fn is_picture(word: &str) -> bool {

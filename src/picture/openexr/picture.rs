@@ -3,15 +3,15 @@
 use super::choice::Choice;
 use super::in_words;
 use crate::memory::available;
-use crate::picture::pixels::{MOST_PIXELS, Picture, fits, too_large};
+use crate::picture::pixels::{MOST_PIXELS, Picture, fits, io_in_words, too_large};
 use crate::picture::primaries::Primaries;
+use crate::picture::source::Source;
 use ::exr::math::Vec2;
 use ::exr::meta::MetaData;
 use ::exr::meta::attribute::EnvironmentMap;
 use ::exr::meta::header::Header;
 use ::exr::prelude::{ReadChannels, ReadLayers, ReadSpecificChannel, read};
 use glam::{DMat3, DVec2, DVec3};
-use std::path::Path;
 
 /// What is to be done with a crop.
 const WHAT_TO_DO: &str =
@@ -20,7 +20,7 @@ const WHAT_TO_DO: &str =
 /// A file of which the head was read.
 #[derive(Debug)]
 pub(in crate::picture) struct Opened<'a> {
-    path: &'a Path,
+    source: Source<'a>,
     choice: Choice,
     window: Window,
     /// Blocks of the part with the picture.
@@ -37,8 +37,10 @@ impl<'a> Opened<'a> {
     ///
     /// # Errors
     /// In words that can follow the file's name.
-    pub(in crate::picture) fn new(path: &'a Path) -> Result<Self, String> {
-        let meta = MetaData::read_from_file(path, false).map_err(in_words)?;
+    pub(in crate::picture) fn new(source: impl Into<Source<'a>>) -> Result<Self, String> {
+        let source = source.into();
+        let stream = source.open().map_err(io_in_words)?;
+        let meta = MetaData::read_from_buffered(stream, false).map_err(in_words)?;
         let mut warnings = Vec::new();
         let choice = Choice::new(&meta.headers, &mut warnings)?;
         let header = &meta.headers[choice.part];
@@ -48,7 +50,7 @@ impl<'a> Opened<'a> {
             None
         });
         let cube = header.own_attributes.environment_map == Some(EnvironmentMap::Cube);
-        Ok(Opened { path, window, chunks: header.chunk_count as u64, matrix, cube, warnings, choice })
+        Ok(Opened { source, window, chunks: header.chunk_count as u64, matrix, cube, warnings, choice })
     }
 
     /// Width and height in pixels.
@@ -124,7 +126,7 @@ impl<'a> Opened<'a> {
         pixel: fn([f32; 4]) -> T,
     ) -> Result<Vec<T>, String> {
         // Every block has its place in a table, and a head of its own.
-        if std::fs::metadata(self.path).is_ok_and(|about| about.len() < 16 * self.chunks) {
+        if self.source.len().is_ok_and(|bytes| bytes < 16 * self.chunks) {
             return Err("it is truncated: its table of blocks is longer than the file".into());
         }
         let outside = pixel([0.0, 0.0, 0.0, if alpha.is_some() { 0.0 } else { 1.0 }]);
@@ -139,6 +141,7 @@ impl<'a> Opened<'a> {
         let alpha = alpha.unwrap_or("no channel: alpha");
         // The library takes the first part that has all that is required, and so does `Choice`.
         let channels = read().no_deep_data().largest_resolution_level().specific_channels().required(r);
+        let stream = self.source.open().map_err(io_in_words)?;
         // It wants different names.
         if r == g {
             let image = channels
@@ -149,7 +152,7 @@ impl<'a> Opened<'a> {
                 )
                 .first_valid_layer()
                 .all_attributes()
-                .from_file(self.path)
+                .from_buffered(stream)
                 .map_err(in_words)?;
             return Ok(image.layer_data.channel_data.pixels);
         }
@@ -163,7 +166,7 @@ impl<'a> Opened<'a> {
             )
             .first_valid_layer()
             .all_attributes()
-            .from_file(self.path)
+            .from_buffered(stream)
             .map_err(in_words)?;
         Ok(image.layer_data.channel_data.pixels)
     }

@@ -1,16 +1,18 @@
-//! What an OBJ file needs to become a picture, and does not say: a camera, and a sky and a ground if next to nothing in it emits, or not where it is looked at.
+//! What a model file needs to become a picture, and does not say: a camera, and a sky and a ground if next to nothing in it emits, or not where it is looked at.
 
 use super::choices::{Choices, SMOOTH, Sky, Up};
+use super::format::Format;
 use super::ground::{self, Ground};
-use super::loader::Loader;
-use super::{environment, footing, lamplight, obj, reach};
-use crate::Result;
+use super::loader::{Loader, listed};
+use super::model::{Model, Reading, said};
+use super::{environment, footing, lamplight, reach};
 use crate::scene::build::pinhole;
 use crate::scene::{
-    Estimator, Exposure, FilmSettings, Filter, FirstView, Integrator, Luminaire, Object, RenderSettings, Scene, Tone,
-    widen,
+    Camera, Estimator, Exposure, FilmSettings, Filter, FirstView, Integrator, Luminaire, Object, RenderSettings, Scene,
+    Tone, widen,
 };
-use glam::{Affine3A, DAffine3, DMat3, DVec3, Vec3};
+use crate::{Error, Result};
+use glam::{DAffine3, DMat3, DVec3, Vec3};
 use std::path::Path;
 
 /// A scene whose emitting triangles have less than this share of its area is not meant to be lit by them alone: they glow, as
@@ -34,7 +36,7 @@ pub(super) const Z_UP: DMat3 = DMat3::from_cols(DVec3::X, DVec3::NEG_Z, DVec3::Y
 /// Size and filter of the picture where nothing is said.
 pub(super) const FILM: FilmSettings = FilmSettings { width: 512, height: 512, filter: Filter::Box, filter_radius: 0.5 };
 
-/// A bare OBJ as a scene, and what was chosen for it.
+/// A bare model as a scene, and what was chosen for it.
 #[derive(Debug)]
 pub(super) struct BareMesh {
     pub scene: Scene,
@@ -48,30 +50,56 @@ pub(super) struct BareMesh {
     pub smooth: Option<f32>,
     /// Which axis was up.
     pub up: Up,
-    /// Whether there is a lamp at the camera.
+    /// How many luminaires without an area the model brings, which are the first of the scene.
+    pub lamps: usize,
+    /// Whether there is a lamp at the camera, the last of the scene's luminaires.
     pub fill: bool,
 }
 
-/// Loads a bare OBJ, as `choices` say or as suits it.
-pub(super) fn load(path: &Path, choices: &Choices) -> Result<BareMesh> {
+/// Loads a bare model, as `choices` say or as suits it.
+pub(super) fn load(path: &Path, format: Format, choices: &Choices) -> Result<BareMesh> {
     let mut loader = Loader::new(Vec::new());
-    let smooth = choices.smooth.unwrap_or(SMOOTH);
-    let how = obj::Reading {
-        smooth: Some(smooth.to_bits()),
+    let how = Reading {
+        smooth: Some(choices.smooth.unwrap_or(SMOOTH).to_bits()),
         smooth_if_unsaid: choices.smooth.is_none(),
         without_colours: false,
     };
-    let mesh = loader.mesh(path, how)?;
-    let smooth = choices.smooth.or(loader.smoothed[mesh as usize].then_some(smooth));
-    let object = Object { name: obj::file_name(path), mesh, object_to_world: Affine3A::IDENTITY, material: None };
-    let mut objects = vec![object];
+    let model = loader.model(path, format, how)?;
+    build(path, &model, loader, choices)
+}
+
+/// A scene of a model that the loader has read.
+pub(super) fn build(path: &Path, model: &Model, mut loader: Loader, choices: &Choices) -> Result<BareMesh> {
+    let is_smoothed = model.placed.iter().any(|placed| loader.smoothed[placed.mesh as usize]);
+    let smooth = choices.smooth.or(is_smoothed.then_some(SMOOTH));
     let up = choices.up.unwrap_or(Up::Y);
     let to_world = match up {
         Up::Y => DAffine3::IDENTITY,
         Up::Z => DAffine3::from_mat3(Z_UP),
     };
-    objects[0].object_to_world = to_world.as_affine3a();
-    let origin = loader.settle(&mut objects, &[to_world]);
+    let (standing, flat) = model.standing(to_world);
+    if !flat.is_empty() {
+        let names = listed(flat.iter().map(|placed| &*placed.name));
+        let why = "the transform cannot be inverted: it flattens the object";
+        loader.warnings.push(format!("{}: {names} left out: {why}", path.display()));
+    }
+    if standing.is_empty() {
+        let why = match flat.len() {
+            0 => "no mesh with triangles stands anywhere in it".to_owned(),
+            all => format!("the transforms of all of its {all} objects flatten them"),
+        };
+        return Err(Error::scene(path, format!("nothing to trace: {why}")));
+    }
+    let mut objects = Vec::new();
+    let mut places = Vec::new();
+    for (placed, place) in standing {
+        let object_to_world = place.as_affine3a();
+        objects.push(Object { name: placed.name.clone(), mesh: placed.mesh, object_to_world, material: None });
+        places.push(place);
+    }
+    let origin = loader.settle(&mut objects, &places);
+    let luminaires = model.luminaires(to_world, origin, &mut loader.warnings);
+    let lamps = luminaires.len();
     let (materials, textures) = loader.finish_materials(&objects);
     let mut scene = Scene {
         path: path.to_owned(),
@@ -80,7 +108,7 @@ pub(super) fn load(path: &Path, choices: &Choices) -> Result<BareMesh> {
         objects,
         materials,
         textures,
-        luminaires: Vec::new(),
+        luminaires,
         environment: None,
         // Until the scene can be looked at.
         sensor: pinhole(Vec3::Z, Vec3::ZERO, Vec3::Y, 40.0),
@@ -95,18 +123,27 @@ pub(super) fn load(path: &Path, choices: &Choices) -> Result<BareMesh> {
     };
     // Before a ground reaches further still.
     reach::check(&scene)?;
+    let bounds = scene.model_bounds();
+    let mut warnings = Vec::new();
+    scene.cameras = model.cameras(to_world, origin, bounds, &mut warnings);
+    scene.warnings.append(&mut warnings);
+    // Who makes a file with cameras or lamps means its light to be all the light.
+    let is_whole = lamps > 0 || !scene.cameras.is_empty();
     let FirstView { sensor, place, inside } = scene.view_from(Vec3::Y, choices.view);
     scene.sensor = sensor;
     // As a scene file can say it in the coordinates of the files.
     for point in [&mut scene.sensor.position, &mut scene.sensor.target] {
-        *point = (point.as_dvec3() + origin - origin).as_vec3();
+        *point = said(*point, origin);
     }
+    let place = take_camera(&mut scene, choices).unwrap_or(place);
     let (emitting, level) = emitting_share(&scene);
-    let lit_share = if emitting >= LEAST_EMITTING || level >= LEAST_LEVEL { lamplight::lit_share(&scene) } else { 0.0 };
+    let may_light = emitting >= LEAST_EMITTING || level >= LEAST_LEVEL || lamps > 0;
+    let lit_share = if may_light { lamplight::lit_share(&scene) } else { 0.0 };
     let lit = lit_share >= LEAST_LIT;
     let sky = choices.sky.clone().unwrap_or_else(|| match (lit, inside) {
         (false, _) => Sky::Studio,
         (true, true) => Sky::None,
+        (true, false) if is_whole => Sky::None,
         (true, false) => faint(level),
     });
     scene.environment = environment::of(&sky, &mut scene.files, &mut scene.warnings)?;
@@ -120,25 +157,43 @@ pub(super) fn load(path: &Path, choices: &Choices) -> Result<BareMesh> {
     if ground.is_some() {
         ground::add(&mut scene, &Ground { height: ground, ..Ground::default() });
     }
-    let fill = choices.fill.unwrap_or(inside && (lit_share < WELL_LIT || level < LEAST_LEVEL));
+    let fill = choices.fill.unwrap_or(lamps == 0 && inside && (lit_share < WELL_LIT || level < LEAST_LEVEL));
     if fill {
         let distance = lamplight::distance_of_what_is_seen(&scene);
         let intensity = Vec3::splat(two_digits(FILL * distance * distance));
         scene.luminaires.push(Luminaire::Point { position: scene.sensor.position, intensity });
     }
     // From outside the studio sky is as bright as a studio is; elsewhere nobody knows.
-    if sky == Sky::Studio && !inside && emitting == 0.0 {
+    if sky == Sky::Studio && !inside && emitting == 0.0 && lamps == 0 {
         scene.settings.exposure = Exposure::Stops(0.0);
     } else {
         // Lamps are in the picture, and what is far from them.
         scene.settings.tone = Tone::Agx;
     }
     scene.warnings.extend(scene.dark_because());
-    let mut bare = BareMesh { scene, loader, sky, ground, smooth, up, fill };
+    let mut bare = BareMesh { scene, loader, sky, ground, smooth, up, lamps, fill };
     let note = bare.note(emitting, choices);
     bare.scene.notes.extend([note, format!("{FIRST_VIEW}{place}")]);
     bare.scene.notes.append(&mut bare.loader.notes);
     Ok(bare)
+}
+
+/// Takes the first camera of a model that has any, and says where it stands; where a side was chosen, the view from there is the first one.
+fn take_camera(scene: &mut Scene, choices: &Choices) -> Option<String> {
+    let first = scene.cameras.first()?.clone();
+    if let Some(side) = choices.view {
+        let is_free = |name: &String| scene.cameras.iter().all(|camera| camera.name != *name);
+        let name = std::iter::once(side.name().to_owned()).chain((2..).map(|n| format!("{} {n}", side.name())));
+        let name = name.into_iter().find(is_free).unwrap_or_default();
+        scene.cameras.insert(0, Camera { name, sensor: scene.sensor.clone() });
+        return None;
+    }
+    scene.sensor = first.sensor;
+    let others = match scene.cameras.len() {
+        1 => String::new(),
+        count => format!(", the first of {count}: --camera NAME takes another"),
+    };
+    Some(format!("where the file has its camera `{}`{others}", first.name))
 }
 
 impl BareMesh {
@@ -151,7 +206,14 @@ impl BareMesh {
             }
             _ => " beside what emits in it".into(),
         };
+        let lamps = match self.lamps {
+            0 => String::new(),
+            1 => "lit by its luminaire".into(),
+            count => format!("lit by its {count} luminaires"),
+        };
         let light = match &self.sky {
+            Sky::None if self.lamps > 0 && emitting > 0.0 => format!("{lamps} and by what emits in it"),
+            Sky::None if self.lamps > 0 => lamps,
             Sky::Studio => format!("studio sky{why}"),
             Sky::Image(path) => format!("the sky of {}", path.display()),
             Sky::Even(radiance) if choices.sky.is_none() => {

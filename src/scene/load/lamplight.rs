@@ -1,6 +1,6 @@
-//! Whether the lamps of a model light what its camera sees (from outside, a closed room with a lamp is black), and how far away that is.
+//! Whether the lamps of a model, with an area and without, light what its camera sees (from outside, a closed room with a lamp is black), and how far away that is.
 
-use crate::scene::{Projection, Scene, widen};
+use crate::scene::{Luminaire, Projection, Scene, one_minus_cos, widen};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -29,7 +29,10 @@ pub(super) fn lit_share(scene: &Scene) -> f64 {
     let seen: Vec<bool> = seen(scene, &faces)
         .into_par_iter()
         .filter(|seen| !seen.emits)
-        .map(|seen| lamps.iter().any(|lamp| is_free(&faces, seen.point, *lamp)))
+        .map(|seen| {
+            lamps.iter().any(|lamp| is_free(&faces, seen.point, *lamp))
+                || scene.luminaires.iter().any(|luminaire| reaches(&faces, luminaire, seen.point))
+        })
         .collect();
     let lit = seen.iter().filter(|lit| **lit).count();
     if seen.is_empty() { 1.0 } else { lit as f64 / seen.len() as f64 }
@@ -132,6 +135,26 @@ fn distance(face: &Face, origin: DVec3, direction: DVec3) -> Option<f64> {
 fn nearest(faces: &[Face], origin: DVec3, direction: DVec3) -> Option<(&Face, f64)> {
     let met = faces.iter().filter_map(|face| Some((face, distance(face, origin, direction)?)));
     met.min_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// Whether a luminaire without an area has a point in sight, and sends light there.
+fn reaches(faces: &[Face], luminaire: &Luminaire, point: DVec3) -> bool {
+    if !luminaire.emits() {
+        return false;
+    }
+    match luminaire {
+        Luminaire::Point { position, .. } | Luminaire::Photometric { position, .. } => {
+            is_free(faces, point, position.as_dvec3())
+        }
+        Luminaire::Spot { position, direction, outer, .. } => {
+            let position = position.as_dvec3();
+            let cosine = (point - position).normalize_or_zero().dot(direction.as_dvec3());
+            1.0 - cosine < one_minus_cos((*outer).into()) && is_free(faces, point, position)
+        }
+        Luminaire::Infinite { direction, .. } | Luminaire::Sun { direction, .. } => {
+            !faces.iter().any(|face| distance(face, point, -direction.as_dvec3()).is_some())
+        }
+    }
 }
 
 /// Whether nothing is between two points but at their ends.

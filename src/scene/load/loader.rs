@@ -1,12 +1,14 @@
 //! The loader: meshes, materials and textures that a scene has loaded so far, each file once.
 
 use super::far::{self, FilePlace};
+use super::format::Format;
 use super::material_draft::Draft;
+use super::model::{Model, Placed, Reading};
 use super::text_file::shortened;
 use super::texture::Textures;
 use super::{ies, mtl, named_file, obj};
-use crate::Result;
 use crate::scene::{Material, Mesh, Object, Physical, Profile, Texture};
+use crate::{Error, Result};
 use glam::{DAffine3, DVec3};
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -29,28 +31,41 @@ pub(super) struct Loader {
     overrides: Vec<Draft>,
     /// Materials that only the scene file defines.
     defined: HashMap<String, u32>,
-    /// For each mesh, the materials of its MTL files by name.
-    named: Vec<HashMap<String, u32>>,
+    /// For each mesh, the materials of its file by name; those of an OBJ are in its MTL files.
+    named: Vec<Arc<HashMap<String, u32>>>,
     /// For each mesh, where its file first uses a material without texture coordinates.
     without_uv: Vec<Vec<WithoutUv>>,
     /// Where each mesh lies in the coordinates of its file.
     places: Vec<FilePlace>,
-    /// For each mesh, whether [`obj::Reading::smooth`] made a difference.
+    /// For each mesh, whether [`Reading::smooth`] made a difference.
     pub smoothed: Vec<bool>,
     /// By file and how it was read.
-    mesh_files: HashMap<(PathBuf, obj::Reading), u32>,
+    models: HashMap<(PathBuf, Reading), Arc<Model>>,
     /// By material, the one that meshes with coloured vertices show instead.
     coloured: HashMap<u32, u32>,
     libraries: HashMap<PathBuf, HashMap<String, u32>>,
     profiles: HashMap<PathBuf, Arc<Profile>>,
 }
 
+/// What is known of a mesh beside its triangles.
+#[derive(Debug, Default)]
+pub(super) struct AboutMesh {
+    /// Where it lies in the coordinates of its file.
+    pub place: FilePlace,
+    /// Whether [`Reading::smooth`] made a difference.
+    pub smoothed: bool,
+    /// The materials of its file by name; an object may ask for one of them.
+    pub named: Arc<HashMap<String, u32>>,
+    /// Its materials that some triangles without texture coordinates have.
+    pub without_uv: Vec<WithoutUv>,
+}
+
 /// Faces of one material that lack texture coordinates.
 #[derive(Debug)]
-struct WithoutUv {
-    material: u32,
-    /// `FILE:LINE`.
-    at: String,
+pub(super) struct WithoutUv {
+    pub material: u32,
+    /// `FILE:LINE` of the first of them.
+    pub at: String,
 }
 
 impl Loader {
@@ -68,26 +83,44 @@ impl Loader {
             without_uv: Vec::new(),
             places: Vec::new(),
             smoothed: Vec::new(),
-            mesh_files: HashMap::new(),
+            models: HashMap::new(),
             coloured: HashMap::new(),
             libraries: HashMap::new(),
             profiles: HashMap::new(),
         }
     }
 
-    /// The mesh of an OBJ file with its MTL files; the same file is loaded once.
+    /// What a model file of this format has; the same file is read once.
+    ///
+    /// # Errors
+    /// If the file cannot be read or is wrong; [`Error::Usage`] if its format is not read yet.
+    pub(super) fn model(&mut self, path: &Path, format: Format, how: Reading) -> Result<Arc<Model>> {
+        let identity = (identity(path), how);
+        if let Some(model) = self.models.get(&identity) {
+            return Ok(model.clone());
+        }
+        // The same file read another way has the same faults.
+        let first = !self.models.keys().any(|(file, _)| *file == identity.0);
+        let model = match format {
+            Format::Obj => self.obj(path, how, first)?,
+            Format::Gltf | Format::Glb | Format::Ply | Format::SceneFile => {
+                // A file that is not there is no glTF either.
+                std::fs::metadata(path).map_err(|error| Error::read(path, error))?;
+                return Err(Error::Usage(format!("{}: {}", path.display(), format.not_yet())));
+            }
+        };
+        let model = Arc::new(model);
+        self.models.insert(identity, model.clone());
+        Ok(model)
+    }
+
+    /// The mesh of an OBJ file with its MTL files.
     ///
     /// # Errors
     /// If the OBJ cannot be read or is wrong. A missing or wrong MTL file is a warning.
-    pub(super) fn mesh(&mut self, path: &Path, how: obj::Reading) -> Result<u32> {
-        let identity = (identity(path), how);
-        if let Some(mesh) = self.mesh_files.get(&identity) {
-            return Ok(*mesh);
-        }
+    fn obj(&mut self, path: &Path, how: Reading, first: bool) -> Result<Model> {
         let obj::Obj { mut mesh, place, materials, libraries, without_uv, smoothed, warnings } = obj::read(path, how)?;
         self.files.push(path.to_owned());
-        // The same file read another way has the same faults.
-        let first = !self.mesh_files.keys().any(|(file, _)| *file == identity.0);
         self.warnings.extend(warnings.into_iter().filter(|warning| first || warning.contains("`smooth`")));
         let mut named = HashMap::new();
         for (names, line) in &libraries {
@@ -116,17 +149,27 @@ impl Loader {
         for triangle in &mut mesh.triangles {
             triangle.material = material_of[triangle.material as usize];
         }
-        let index = self.meshes.len() as u32;
+        let at = |line| format!("{}:{line}", path.display());
+        let without_uv =
+            without_uv.iter().map(|(slot, line)| WithoutUv { material: material_of[*slot], at: at(*line) }).collect();
+        let about = AboutMesh { place, smoothed, named: named.into(), without_uv };
+        let mesh = self.add(mesh, about);
+        let placed = mesh.map(|mesh| Placed { mesh, matrix: DAffine3::IDENTITY, name: obj::file_name(path) });
+        Ok(Model { placed: placed.into_iter().collect(), ..Model::default() })
+    }
+
+    /// Keeps a mesh, whose triangles have the loader's materials, and gives its number; one without triangles is none.
+    pub(super) fn add(&mut self, mesh: Mesh, about: AboutMesh) -> Option<u32> {
+        if mesh.triangles.is_empty() {
+            return None;
+        }
+        let AboutMesh { place, smoothed, named, without_uv } = about;
         self.meshes.push(mesh.into());
         self.places.push(place);
         self.smoothed.push(smoothed);
         self.named.push(named);
-        let at = |line| format!("{}:{line}", path.display());
-        let without_uv =
-            without_uv.iter().map(|(slot, line)| WithoutUv { material: material_of[*slot], at: at(*line) });
-        self.without_uv.push(without_uv.collect());
-        self.mesh_files.insert(identity, index);
-        Ok(index)
+        self.without_uv.push(without_uv);
+        Some(self.meshes.len() as u32 - 1)
     }
 
     /// The profile of a photometric file; the same file is read once.
@@ -330,6 +373,14 @@ impl Loader {
         }
         self.libraries.insert(identity, materials.clone());
         Ok(materials)
+    }
+}
+
+#[cfg(test)]
+impl Loader {
+    /// Takes this for what a model file of this name has.
+    pub(super) fn pretend(&mut self, path: &Path, how: Reading, model: Model) {
+        self.models.insert((identity(path), how), Arc::new(model));
     }
 }
 

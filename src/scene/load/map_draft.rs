@@ -1,6 +1,6 @@
 //! A map of a material while it is still being read.
 
-use super::texture::MapFile;
+use super::map_file::MapFile;
 
 /// What is said about a map.
 #[derive(Debug, Clone, Default)]

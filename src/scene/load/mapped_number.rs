@@ -1,7 +1,7 @@
 //! A number or a colour of a material that a map multiplies, while they are still being read.
 
 use super::map_draft::MapDraft;
-use super::texture::MapFile;
+use super::map_file::MapFile;
 use glam::Vec3;
 
 /// One of them, with its map. Where the number is missing it is 1 beside the map; where it is 0 the map does nothing.

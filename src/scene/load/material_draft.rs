@@ -1,9 +1,10 @@
 //! A material while it is still being read: what nobody has said yet is `None`.
 
 pub(super) use super::map_draft::MapDraft;
+use super::map_file::{Channel, MapFile};
 use super::mapped_number::{Mapped, Number};
 use super::physical_draft::{MetalColour, PhysicalDraft, PhysicalDraftMaps, bounded};
-use super::texture::{Channel, Looks, MapFile, Relief, Textures};
+use super::texture::{Looks, Relief, Textures};
 use crate::scene::{BumpMap, Maps, Material, NormalMap};
 use glam::Vec3;
 use std::ops::RangeInclusive;

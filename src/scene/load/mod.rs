@@ -8,14 +8,17 @@ mod choices;
 mod environment;
 mod far;
 mod footing;
+mod format;
 mod ground;
 mod ies;
 mod lamplight;
 mod loader;
 mod map_draft;
+mod map_file;
 mod mapped_number;
 mod material_draft;
 mod metals;
+mod model;
 mod mtl;
 mod named_file;
 mod near_name;
@@ -32,37 +35,39 @@ mod toml;
 
 pub use camera::use_camera;
 pub use choices::{Choices, Sky, Up};
+pub use format::{is_bare, is_scene};
 pub use metals::metal_name;
 pub use scene_file::{SceneFile, scene_file};
 
 use crate::scene::Scene;
 use crate::{Error, Result};
+use format::{ENDINGS, Format};
 use near_name::instead_of;
 use std::path::Path;
 
-/// Loads a scene file (`.toml`), or any OBJ (`.obj`), which then gets a camera and, if next to nothing in it
+/// Loads a scene file (`.toml`), or a model (an OBJ, `.obj`), which then gets a camera and, if next to nothing in it
 /// emits, a sky and a ground.
 ///
 /// # Errors
-/// [`Error::Usage`] for another ending; otherwise if a file cannot be read or is wrong, with file and line.
+/// [`Error::Usage`] for another format; otherwise if a file cannot be read or is wrong, with file and line.
 pub fn load(path: &Path) -> Result<Scene> {
     load_with(path, &Choices::default())
 }
 
-/// [`load`], with choices in place of what a file says or of what a bare OBJ would get.
+/// [`load`], with choices in place of what a file says or of what a bare model would get.
 ///
 /// # Errors
 /// As for [`load`]; also [`Error::Usage`] for a scene file with a choice that is for bare models only, and where the image of a chosen sky
 /// cannot be read.
 pub fn load_with(path: &Path, choices: &Choices) -> Result<Scene> {
     let ending = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
-    let mut scene = match ending.as_str() {
-        "toml" => {
+    let mut scene = match Format::of(path) {
+        Some(Format::SceneFile) => {
             choices.check_for_scene_file(path)?;
             toml::load(path, choices).map_err(with_what_is_there(path))?
         }
-        "obj" => bare_mesh::load(path, choices).map_err(with_what_is_there(path))?.scene,
-        _ => {
+        Some(model) => bare_mesh::load(path, model, choices).map_err(with_what_is_there(path))?.scene,
+        None => {
             // Who names a picture first has swapped two words, and is told so.
             let foreign = if is_picture(&ending) { None } else { other_formats::named(path) };
             let otherwise = what_else(path, &ending);
@@ -116,7 +121,7 @@ fn with_what_is_there(scene: &Path) -> impl Fn(Error) -> Error {
 fn what_else(path: &Path, ending: &str) -> String {
     if path.is_dir() {
         let entries = std::fs::read_dir(path).into_iter().flatten().flatten();
-        let mut scenes: Vec<_> = entries.map(|entry| entry.path()).filter(|path| is_scene(path)).collect();
+        let mut scenes: Vec<_> = entries.map(|entry| entry.path()).filter(|path| has_ending(path)).collect();
         // A scene file knows its camera and its light.
         scenes.sort_by_key(|path| {
             (!path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")), path.clone())
@@ -129,7 +134,7 @@ fn what_else(path: &Path, ending: &str) -> String {
     if is_picture(ending) {
         return "; the scene comes first, and the picture behind -o: luminaire render SCENE -o PICTURE".into();
     }
-    let with_ending = ["toml", "obj"].map(|ending| std::path::PathBuf::from(format!("{}.{ending}", path.display())));
+    let with_ending = ENDINGS.map(|ending| std::path::PathBuf::from(format!("{}.{ending}", path.display())));
     match with_ending.iter().find(|path| path.is_file()) {
         Some(scene) if ending.is_empty() => format!(": there is {}", scene.display()),
         _ => String::new(),
@@ -141,7 +146,7 @@ fn is_picture(ending: &str) -> bool {
     ["png", "exr", "hdr", "jpg", "jpeg"].contains(&ending)
 }
 
-/// Whether a file is a scene by its name.
-fn is_scene(path: &Path) -> bool {
-    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml") || ending.eq_ignore_ascii_case("obj"))
+/// Whether a file is one that is read, by its name.
+fn has_ending(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ENDINGS.iter().any(|known| ending.eq_ignore_ascii_case(known)))
 }

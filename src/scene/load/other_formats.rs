@@ -3,51 +3,78 @@
 use std::io::Read;
 use std::path::Path;
 
-const BLENDER: &str = "import it in Blender (File > Import) and export it with File > Export > Wavefront (.obj), `Triangulated Mesh` and `Materials` on";
-const MESHLAB: &str =
+pub(super) const BLENDER: &str = "import it in Blender (File > Import) and export it with File > Export > Wavefront (.obj), `Triangulated Mesh` and `Materials` on";
+pub(super) const MESHLAB: &str =
     "convert it, for example with MeshLab (File > Export Mesh As > .obj), Blender, or `assimp export IN out.obj`";
 const BY_HAND: &str =
     "export its meshes as .obj, and write sensor, luminaires and materials into a .toml (scenes/README.md)";
 
 /// What a file is and how it becomes an OBJ, by its content and, where that says nothing, its ending; none if neither is known.
 pub(super) fn named(path: &Path) -> Option<String> {
+    let start = first_bytes(path, 512);
+    let ending = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+    let (what, how) = by_content(&start).or_else(|| by_ending(&ending))?;
+    Some(format!("{what} is not read here: {how}"))
+}
+
+/// The first bytes of a regular file, at most so many; none of what is not there or cannot be read.
+pub(super) fn first_bytes(path: &Path, most: u64) -> Vec<u8> {
     let mut start = Vec::new();
     // A pipe or a device may never end.
     if path.is_file()
         && let Ok(file) = std::fs::File::open(path)
     {
         // What cannot be read has its ending still.
-        let _ = file.take(512).read_to_end(&mut start);
+        let _ = file.take(most).read_to_end(&mut start);
     }
-    let ending = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
-    let (what, how) = by_content(&start).or_else(|| by_ending(&ending))?;
-    Some(format!("{what} is not read here: {how}"))
+    start
 }
 
-fn by_content(start: &[u8]) -> Option<(&'static str, &'static str)> {
-    let text = String::from_utf8_lossy(start);
-    let has = |part: &str| text.contains(part);
+/// Whether this begins a file of another format, which nobody could take for an OBJ or a scene file, whatever such a text may hold.
+pub(super) fn is_no_text(start: &[u8]) -> bool {
+    binary(start).is_some()
+}
+
+/// Formats that are known by bytes which no OBJ and no scene file begins with.
+fn binary(start: &[u8]) -> Option<(&'static str, &'static str)> {
     Some(match start {
-        [b'g', b'l', b'T', b'F', ..] => ("glTF (.glb)", BLENDER),
-        _ if start.starts_with(b"Kaydara FBX Binary") || text.starts_with("; FBX ") => ("FBX", BLENDER),
-        _ if start.starts_with(b"PXR-USDC") || text.starts_with("#usda") => ("USD", BLENDER),
+        _ if start.starts_with(b"Kaydara FBX Binary") => ("FBX", BLENDER),
+        _ if start.starts_with(b"PXR-USDC") => ("USD", BLENDER),
+        _ if start.starts_with(b"Ogawa") => ("Alembic", BLENDER),
         _ if start.starts_with(b"BLENDER") => {
             ("Blender's own format", "open it in Blender and export it with File > Export > Wavefront (.obj)")
         }
-        _ if text.starts_with("ply\n") || text.starts_with("ply\r") => ("PLY", MESHLAB),
-        _ if text.starts_with("solid ") && has("facet") => ("STL", MESHLAB),
-        _ if text.starts_with("OFF\n") || text.starts_with("COFF\n") || text.starts_with("NOFF\n") => ("OFF", MESHLAB),
-        _ if text.starts_with("#VRML") || has("<X3D") => ("VRML or X3D", BLENDER),
-        _ if has("<COLLADA") => ("COLLADA", BLENDER),
-        _ if has("<scene version") => ("a scene of Mitsuba", BY_HAND),
-        _ if has("WorldBegin") || has("LookAt ") && has("Camera ") => ("a scene of pbrt", BY_HAND),
+        [0x1f, 0x8b, ..] => ("a compressed file", "unpack it first, for example with `gunzip`"),
+        _ if start.starts_with(b"version https://git-lfs") => {
+            ("a pointer of Git LFS in place of the file", "fetch it with `git lfs pull`")
+        }
         _ => return None,
+    })
+}
+
+/// Formats that are known by how they begin, and how one of them becomes an OBJ.
+pub(super) fn by_content(start: &[u8]) -> Option<(&'static str, &'static str)> {
+    let text = String::from_utf8_lossy(&start[..start.len().min(512)]);
+    let has = |part: &str| text.contains(part);
+    binary(start).or_else(|| {
+        Some(match start {
+            _ if text.starts_with("; FBX ") => ("FBX", BLENDER),
+            _ if text.starts_with("#usda") => ("USD", BLENDER),
+            _ if text.starts_with("solid ") && has("facet") => ("STL", MESHLAB),
+            _ if text.starts_with("OFF\n") || text.starts_with("COFF\n") || text.starts_with("NOFF\n") => {
+                ("OFF", MESHLAB)
+            }
+            _ if text.starts_with("#VRML") || has("<X3D") => ("VRML or X3D", BLENDER),
+            _ if has("<COLLADA") => ("COLLADA", BLENDER),
+            _ if has("<scene version") => ("a scene of Mitsuba", BY_HAND),
+            _ if has("WorldBegin") || has("LookAt ") && has("Camera ") => ("a scene of pbrt", BY_HAND),
+            _ => return None,
+        })
     })
 }
 
 fn by_ending(ending: &str) -> Option<(&'static str, &'static str)> {
     Some(match ending {
-        "gltf" | "glb" => ("glTF", BLENDER),
         "fbx" => ("FBX", BLENDER),
         "usd" | "usda" | "usdc" | "usdz" => ("USD", BLENDER),
         "abc" => ("Alembic", BLENDER),
@@ -57,7 +84,6 @@ fn by_ending(ending: &str) -> Option<(&'static str, &'static str)> {
         "3ds" | "max" | "ma" | "mb" | "c4d" | "lwo" | "lws" | "skp" | "hip" | "3dm" | "ztl" => {
             ("a format of a modelling program", "open it there (or in Blender) and export it as .obj")
         }
-        "ply" => ("PLY", MESHLAB),
         "stl" => ("STL", MESHLAB),
         "off" => ("OFF", MESHLAB),
         "3mf" | "amf" => ("a format of 3D printers", MESHLAB),
@@ -88,11 +114,10 @@ mod tests {
     fn content_counts_before_the_ending() {
         let folder = tempfile::tempdir().unwrap();
         for (name, content, parts) in [
-            ("a.glb", &b"glTF\x02\0\0\0"[..], ["glTF", "Wavefront"]),
-            ("a.bin", b"glTF\x02\0\0\0", ["glTF", "Wavefront"]),
-            ("a.gltf", b"{}", ["glTF", "Wavefront"]),
+            ("a.glb", &b"Ogawa\xff"[..], ["Alembic", "Wavefront"]),
+            ("a.gltf", b"version https://git-lfs.github.com/spec/v1\n", ["Git LFS", "git lfs pull"]),
+            ("a.obj", b"\x1f\x8b\x08\0", ["compressed", "gunzip"]),
             ("a.x", b"Kaydara FBX Binary  \0", ["FBX", "Blender"]),
-            ("a.mesh", b"ply\nformat ascii 1.0\n", ["PLY", "MeshLab"]),
             ("a.stl", b"\0\0\0\0", ["STL", "MeshLab"]),
             ("a.dae", b"<?xml version=\"1.0\"?><COLLADA>", ["COLLADA", "Blender"]),
             ("a.xml", b"<scene version=\"2.0.0\">", ["Mitsuba", ".toml"]),

@@ -1,8 +1,9 @@
 //! What makes a metallic-roughness surface of a material, while it is still being read: what nobody has said yet is `None`.
 
 use super::map_draft::MapDraft;
+use super::map_file::MapFile;
 use super::mapped_number::{Mapped, Number};
-use super::texture::{MapFile, Textures};
+use super::texture::Textures;
 use crate::scene::{ChannelMap, Physical, PhysicalMaps};
 use glam::Vec3;
 

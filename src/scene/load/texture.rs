@@ -1,13 +1,13 @@
-//! Textures: which file a map means, what its options change, and the texels that both tracers see.
+//! Textures: what the options of a map change, and the texels that both tracers see.
 
-use super::{named_file, texel_faults};
+use super::map_file::{Channel, Identity, MapFile};
+use super::texel_faults;
 use crate::picture::decode::{CHUNK, ImageFile};
 use crate::scene::{ChannelMap, Texture};
-use glam::{Affine2, DVec3, Vec2, Vec3};
+use glam::{DVec3, Vec3};
 use half::f16;
 use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// What happens where the file of a map cannot be used.
@@ -16,52 +16,10 @@ const NO_MAP: &str = "there is no map then";
 /// Most texels of all textures of a scene together: 2 GiB as they are kept.
 const MOST_TEXELS: u64 = 1 << 28;
 
-/// Where a material's map is and how it is to be read.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct MapFile {
-    /// The name as it is written, and where that does not exist, what else it may mean.
-    pub names: Vec<String>,
-    /// The folder that the names are relative to.
-    pub folder: PathBuf,
-    /// `FILE:LINE` of the statement, for warnings.
-    pub at: String,
-    /// `-clamp on`.
-    pub clamp: bool,
-    /// `-mm`: a texel `t` counts as `base + gain * t`.
-    pub base: f32,
-    /// See `base`.
-    pub gain: f32,
-    /// `-imfchan`, for scalars.
-    pub channel: Channel,
-    /// The image's alpha is the opacity: colours that are multiplied by it already are divided by it.
-    pub straight: bool,
-    /// Its colours are numbers as they are stored, whatever curve the picture has.
-    pub stored: bool,
-    /// `-s`: how often the picture is there between the coordinates 0 and 1, each way.
-    pub scale: Vec2,
-    /// `-o`: the place in the picture, as a share of its size, that the coordinates (0, 0) show.
-    pub offset: Vec2,
-}
-
-/// Largest scale and offset of a map, up or down: with more, single precision does not know which texel is meant.
-pub(super) const LARGEST_TRANSFORM: f32 = 1e6;
-
-/// Which channel of an image is a scalar.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub(super) enum Channel {
-    /// Alpha, if some of it is not opaque, else luminance.
-    #[default]
-    Any,
-    /// Red, green, blue or alpha, by index.
-    One(u8),
-    /// Luminance.
-    Luminance,
-}
-
 /// What decides whether two maps are one texture.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 struct Key {
-    file: PathBuf,
+    picture: Identity,
     clamp: bool,
     base: u32,
     gain: u32,
@@ -110,7 +68,7 @@ pub(super) enum Looks {
     Open,
 }
 
-/// The textures loaded so far; one file with the same options is loaded once, wherever its maps place it.
+/// The textures loaded so far; one picture with the same options is loaded once, wherever its maps place it.
 #[derive(Debug, Default)]
 pub(super) struct Textures {
     /// What was loaded.
@@ -128,68 +86,15 @@ pub(super) struct Textures {
     said: HashSet<String>,
 }
 
-impl MapFile {
-    /// A map without options.
-    pub(super) fn plain(names: Vec<String>, folder: &Path, at: String) -> Self {
-        MapFile {
-            names,
-            folder: folder.to_owned(),
-            at,
-            clamp: false,
-            base: 0.0,
-            gain: 1.0,
-            channel: Channel::Any,
-            scale: Vec2::ONE,
-            offset: Vec2::ZERO,
-            straight: false,
-            stored: false,
-        }
-    }
-
-    /// Whether two maps are in one file.
-    pub(super) fn is_same_file(&self, other: &MapFile) -> bool {
-        let file = |map: &MapFile| map.find().ok().and_then(|(path, _)| path.canonicalize().ok());
-        self.names == other.names && self.folder == other.folder
-            || file(self).is_some_and(|path| Some(path) == file(other))
-    }
-
-    /// The file, if there is one.
-    pub(super) fn path(&self) -> Option<PathBuf> {
-        Some(self.find().ok()?.0)
-    }
-
-    fn colours(&self) -> Kind {
-        if self.stored { Kind::Stored } else { Kind::Colours }
-    }
-
-    /// First the scale, then the offset: so Blender and three.js read and write `-s` and `-o`.
-    fn transform(&self) -> Affine2 {
-        // Where the picture repeats, whole turns say nothing, but cost digits.
-        let offset = if self.clamp { self.offset } else { self.offset - self.offset.trunc() };
-        Affine2::from_scale_angle_translation(self.scale, 0.0, offset)
-    }
-
-    /// The file, and a warning if it is not quite the one that is named.
-    fn find(&self) -> Result<(PathBuf, Option<String>), String> {
-        let written = &self.names[0];
-        if let Some(path) = self.names.iter().find_map(|name| named_file::exactly(&self.folder, name)) {
-            return Ok((path, None));
-        }
-        if let Some(path) = self.names.iter().find_map(|name| named_file::nearly(&self.folder, name)) {
-            let warning = format!("{}: {}", self.at, named_file::instead(&self.folder, written, &path));
-            return Ok((path, Some(warning)));
-        }
-        // A name that exists but is no file deserves a better word than that it is missing.
-        let path = self.folder.join(written);
-        if path.exists() { Ok((path, None)) } else { Err("there is no such file".into()) }
-    }
+fn colours(map: &MapFile) -> Kind {
+    if map.stored { Kind::Stored } else { Kind::Colours }
 }
 
 impl Textures {
     /// The texture of a map that multiplies a colour; its alpha is the image's own. If the file cannot be used, which is a
     /// warning, a checkerboard that nobody overlooks.
     pub(super) fn visible(&mut self, map: &MapFile, warnings: &mut Vec<String>) -> u32 {
-        let texture = self.load(map, map.colours(), "a checkerboard of magenta and black shows instead", warnings);
+        let texture = self.load(map, colours(map), "a checkerboard of magenta and black shows instead", warnings);
         match texture {
             Some(texture) => self.placed(texture, map),
             None => self.fallback(),
@@ -198,7 +103,7 @@ impl Textures {
 
     /// The same, but none if the file cannot be used.
     pub(super) fn optional(&mut self, map: &MapFile, warnings: &mut Vec<String>) -> Option<u32> {
-        self.load(map, map.colours(), NO_MAP, warnings).map(|texture| self.placed(texture, map))
+        self.load(map, colours(map), NO_MAP, warnings).map(|texture| self.placed(texture, map))
     }
 
     /// The texture of a map that multiplies a number, and its channel: the one that is asked for, or luminance, as Blender makes a number of a colour. None if
@@ -242,7 +147,7 @@ impl Textures {
 
     /// A loaded texture where the map wants it: another one with the same texels, unless it is there already.
     fn placed(&mut self, texture: u32, map: &MapFile) -> u32 {
-        let transform = map.transform();
+        let transform = map.placement();
         let source = self.loaded[texture as usize].clone();
         if source.transform == transform {
             return texture;
@@ -279,21 +184,21 @@ impl Textures {
 
     /// `instead` says what happens if the file cannot be used.
     fn load(&mut self, map: &MapFile, kind: Kind, instead: &str, warnings: &mut Vec<String>) -> Option<u32> {
-        let (path, guess) = match map.find() {
+        let (picture, guess) = match map.find() {
             Ok(found) => found,
             Err(reason) => {
-                self.refuse(&map.folder.join(&map.names[0]), map, &format!("{reason}; {instead}"), warnings);
+                self.refuse(&map.place(), map, &format!("{reason}; {instead}"), warnings);
                 return None;
             }
         };
+        let shown = picture.shown();
         if let Some(guess) = guess
-            && self.said.insert(format!("{} {}", map.names[0], path.display()))
+            && self.said.insert(format!("{} {shown}", map.written()))
         {
             warnings.push(guess);
         }
-        let file = path.canonicalize().unwrap_or_else(|_| path.clone());
         let key = Key {
-            file,
+            picture: picture.identity(),
             clamp: map.clamp,
             base: map.base.to_bits(),
             gain: map.gain.to_bits(),
@@ -315,7 +220,7 @@ impl Textures {
                 "with its {texels} texels the textures of the scene would have more than {MOST_TEXELS}: make them smaller"
             )
         };
-        let texture = match ImageFile::open(&path, MOST_TEXELS - self.texels, too_many) {
+        let texture = match ImageFile::open(picture.source(), MOST_TEXELS - self.texels, too_many) {
             Ok(image) => {
                 self.texels += image.len() as u64;
                 let asked = matches!(kind, Kind::Normals | Kind::Heights { .. });
@@ -327,8 +232,8 @@ impl Textures {
                 let (texels, faults) = texels(&image, map, found);
                 self.looks.push(looks);
                 for fault in image.warnings.iter().cloned().chain(faults) {
-                    if self.said.insert(format!("{} {fault}", path.display())) {
-                        warnings.push(format!("{}: the texture {}: {fault}", map.at, path.display()));
+                    if self.said.insert(format!("{shown} {fault}")) {
+                        warnings.push(format!("{}: the texture {shown}: {fault}", map.at));
                     }
                 }
                 if !image.is_premultiplied() {
@@ -338,15 +243,15 @@ impl Textures {
                 if found != kind {
                     self.by_key.insert(Key { kind: found, ..key.clone() }, Some(self.loaded.len() as u32));
                 }
-                let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+                let name = picture.short_name();
                 let (width, height) = (image.width, image.height);
                 self.ranges.push(Range::of(&texels));
-                let (texels, clamp, transform) = (texels.into(), map.clamp, map.transform());
+                let (texels, clamp, transform) = (texels.into(), map.clamp, map.placement());
                 self.loaded.push(Texture { name, width, height, texels, clamp, transform }.into());
                 Some(self.loaded.len() as u32 - 1)
             }
             Err(reason) => {
-                self.refuse(&path, map, &format!("{reason}; {instead}"), warnings);
+                self.refuse(&shown, map, &format!("{reason}; {instead}"), warnings);
                 None
             }
         };
@@ -354,10 +259,10 @@ impl Textures {
         texture
     }
 
-    /// One warning for each file.
-    fn refuse(&mut self, path: &Path, map: &MapFile, reason: &str, warnings: &mut Vec<String>) {
-        if self.said.insert(path.display().to_string()) {
-            warnings.push(format!("{}: the texture {} cannot be used: {reason}", map.at, path.display()));
+    /// One warning for each picture.
+    fn refuse(&mut self, picture: &str, map: &MapFile, reason: &str, warnings: &mut Vec<String>) {
+        if self.said.insert(picture.to_owned()) {
+            warnings.push(format!("{}: the texture {picture} cannot be used: {reason}", map.at));
         }
     }
 }
@@ -514,6 +419,91 @@ impl Texture {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::load::map_file::MapSource;
+
+    /// A map of a picture within another file.
+    fn within(bytes: &[u8], name: &str) -> MapFile {
+        MapFile::of(MapSource::Bytes { bytes: bytes.into(), name: name.into() }, "a.glb: materials[0]".into())
+    }
+
+    /// What a picture says in memory is what it says in a file.
+    #[test]
+    fn bytes_are_read_as_files_are() {
+        let folder = tempfile::tempdir().unwrap();
+        let encoded = |format, sixteen: bool| {
+            let mut bytes = std::io::Cursor::new(Vec::new());
+            let image = image::RgbaImage::from_fn(5, 3, |x, y| image::Rgba([50 * x as u8, 80 * y as u8, 7, 200]));
+            let image = match (format, sixteen) {
+                (image::ImageFormat::Hdr, _) => image::DynamicImage::from(image).into_rgb32f().into(),
+                (image::ImageFormat::Jpeg, _) => image::DynamicImage::from(image).into_rgb8().into(),
+                (_, true) => image::DynamicImage::from(image).into_rgba16().into(),
+                _ => image::DynamicImage::from(image),
+            };
+            image.write_to(&mut bytes, format).unwrap();
+            bytes.into_inner()
+        };
+        let png = encoded(image::ImageFormat::Png, false);
+        // After the signature and the 25 bytes of IHDR: a gamma of 1.
+        let gamma = [&png[..33], b"\0\0\0\x04gAMA\0\x01\x86\xa0\x31\xe8\x96\x5f", &png[33..]].concat();
+        for (name, bytes) in [
+            ("a.png", png.clone()),
+            ("b.png", encoded(image::ImageFormat::Png, true)),
+            ("gamma.png", gamma),
+            ("a.jpg", encoded(image::ImageFormat::Jpeg, false)),
+            ("a.webp", encoded(image::ImageFormat::WebP, false)),
+            ("a.hdr", encoded(image::ImageFormat::Hdr, false)),
+            // Only the ending says what it is.
+            ("a.tga", encoded(image::ImageFormat::Tga, false)),
+            // Only the content does.
+            ("wrong.jpg", png.clone()),
+            ("none", png.clone()),
+            // And what is wrong.
+            ("empty.png", vec![]),
+            ("cut.png", png[..60].to_vec()),
+            ("short.hdr", b"#?RADIANCE\n\n-Y 9 +X 9\n\x02".to_vec()),
+            ("cut.exr", b"\x76\x2f\x31\x01".to_vec()),
+            ("text.png", b"hello".to_vec()),
+            ("a.ktx2", b"\xabKTX 20\xbb\r\n\x1a\n".to_vec()),
+        ] {
+            std::fs::write(folder.path().join(name), &bytes).unwrap();
+            let file = MapFile::plain(vec![name.into()], folder.path(), "a.glb: materials[0]".into());
+            let read = |map: &MapFile| {
+                let mut textures = Textures::default();
+                let mut warnings = Vec::new();
+                let texture = textures.optional(map, &mut warnings);
+                let shown = folder.path().join(name).display().to_string();
+                let warnings: Vec<_> = warnings.iter().map(|warning| warning.replace(&shown, name)).collect();
+                (texture.map(|texture| textures.loaded[texture as usize].clone()), warnings)
+            };
+            let (from_file, from_bytes) = (read(&file), read(&within(&bytes, name)));
+            assert_eq!(from_file, from_bytes, "{name}");
+            let is_wrong = ["empty", "cut", "short", "text", "ktx2"].iter().any(|part| name.contains(part));
+            assert_eq!((from_bytes.0.is_none(), from_bytes.1.len()), (is_wrong, is_wrong.into()), "{from_bytes:?}");
+        }
+    }
+
+    #[test]
+    fn the_same_bytes_are_one_texture() {
+        let png = |colour| {
+            let mut bytes = std::io::Cursor::new(Vec::new());
+            image::RgbImage::from_pixel(1, 1, image::Rgb(colour))
+                .write_to(&mut bytes, image::ImageFormat::Png)
+                .unwrap();
+            bytes.into_inner()
+        };
+        let (red, green) = (png([255, 0, 0]), png([0, 255, 0]));
+        let mut textures = Textures::default();
+        let mut load = |map: &MapFile| textures.optional(map, &mut Vec::new()).unwrap();
+        let maps = [within(&red, "0"), within(&red, "0"), within(&red, "1"), within(&green, "2")];
+        assert_eq!(maps.each_ref().map(&mut load), [0, 0, 0, 1]);
+        assert!(maps[0].is_same_file(&maps[1]) && !maps[0].is_same_file(&maps[3]));
+        // Turned by a quarter, it is another texture of the same texels.
+        let turn = glam::Affine2::from_angle(std::f32::consts::FRAC_PI_2);
+        let turned = MapFile { transform: turn, ..maps[0].clone() };
+        assert_eq!(load(&turned), 2);
+        assert!(Arc::ptr_eq(&textures.loaded[0].texels, &textures.loaded[2].texels));
+        assert_eq!((textures.loaded[2].transform, turned.scale_and_offset()), (turn, None));
+    }
 
     #[test]
     fn a_scene_has_only_so_many_texels() {

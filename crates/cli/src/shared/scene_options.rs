@@ -57,7 +57,7 @@ impl SceneOptions {
     /// As for [`scene::load_with`].
     pub fn load_cut_out(&self, path: &Path) -> luminaire::Result<Scene> {
         let mut choices = self.choices();
-        if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("obj")) {
+        if scene::is_bare(path) {
             choices.ground.get_or_insert(false);
         }
         scene::load_with(path, &choices)

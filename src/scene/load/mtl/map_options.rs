@@ -1,6 +1,6 @@
 //! The options and the file name of an MTL texture statement.
 
-use crate::scene::load::texture::{Channel, LARGEST_TRANSFORM, MapFile};
+use crate::scene::load::map_file::{Channel, LARGEST_TRANSFORM, MapFile, MapSource, scaled_and_moved};
 use glam::Vec2;
 use std::path::Path;
 
@@ -29,6 +29,7 @@ pub(super) fn parse(rest: &str, folder: &Path, at: String) -> Result<MapStatemen
     let mut reader = Reader { rest };
     let mut map = MapFile::plain(Vec::new(), folder, at);
     let (mut ignored, mut notes, mut multiplier) = (Vec::new(), Vec::new(), None);
+    let (mut scale, mut offset) = (Vec2::ONE, Vec2::ZERO);
     let mut ignore = |option: &str, changes: bool| {
         if changes && !ignored.iter().any(|ignored| ignored == option) {
             ignored.push(option.to_owned());
@@ -54,15 +55,15 @@ pub(super) fn parse(rest: &str, folder: &Path, at: String) -> Result<MapStatemen
             // A third number is for solid textures. The specification's words for `-s` ("expanding or shrinking") leave open which is which: all
             // who read it repeat the picture that often.
             "-o" => match pair(&reader.numbers(&option)?, 0.0) {
-                Some(offset) => map.offset = offset,
+                Some(read) => offset = read,
                 None => notes.push(beyond("-o")),
             },
             "-s" => match pair(&reader.numbers(&option)?, 1.0) {
-                Some(scale) => {
-                    if scale.min_element() == 0.0 || scale.max_element() == 0.0 {
+                Some(read) => {
+                    if read.min_element() == 0.0 || read.max_element() == 0.0 {
                         notes.push("-s 0 shows one row or column of the picture everywhere".into());
                     }
-                    map.scale = scale;
+                    scale = read;
                 }
                 None => notes.push(beyond("-s")),
             },
@@ -100,7 +101,8 @@ pub(super) fn parse(rest: &str, folder: &Path, at: String) -> Result<MapStatemen
             return parse(&format!("{options} {} {}", &name[at..], &name[..at]), folder, map.at);
         }
     }
-    map.names = meanings(name);
+    map.source = MapSource::File { names: meanings(name), folder: folder.to_owned() };
+    map.transform = scaled_and_moved(scale, offset);
     Ok(MapStatement { map, multiplier, ignored, notes })
 }
 
@@ -194,6 +196,11 @@ impl<'a> Reader<'a> {
 mod tests {
     use super::*;
 
+    fn names(statement: &MapStatement) -> &[String] {
+        let MapSource::File { names, .. } = &statement.map.source else { panic!("no file") };
+        names
+    }
+
     fn read(rest: &str) -> MapStatement {
         parse(rest, Path::new(""), String::new()).unwrap_or_else(|error| panic!("{rest}: {error}"))
     }
@@ -212,11 +219,11 @@ mod tests {
             ("-clamp on -wall-2.png", "-wall-2.png"),
             ("2 wood.png", "2 wood.png"),
         ] {
-            assert_eq!(read(rest).map.names, [name], "{rest}");
+            assert_eq!(names(&read(rest)), [name], "{rest}");
         }
-        assert_eq!(read("a.png # red").map.names, ["a.png # red", "a.png"]);
-        assert_eq!(read("\"a b.png\"").map.names, ["\"a b.png\"", "a b.png"]);
-        assert!(read("\"a #1.png\" # red").map.names.contains(&"a #1.png".to_owned()));
+        assert_eq!(names(&read("a.png # red")), ["a.png # red", "a.png"]);
+        assert_eq!(names(&read("\"a b.png\"")), ["\"a b.png\"", "a b.png"]);
+        assert!(names(&read("\"a #1.png\" # red")).contains(&"a #1.png".to_owned()));
     }
 
     #[test]
@@ -224,7 +231,7 @@ mod tests {
         let statement = read("-clamp on -mm 0.25 2 -imfchan g -o 0 0 0 -s 1 -t 0.1 a.png");
         let map = &statement.map;
         assert_eq!((map.clamp, map.base, map.gain, map.channel), (true, 0.25, 2.0, Channel::One(1)));
-        assert_eq!((map.scale, map.offset), (Vec2::ONE, Vec2::ZERO));
+        assert_eq!(map.scale_and_offset().unwrap(), (Vec2::ONE, Vec2::ZERO));
         assert_eq!(statement.ignored, ["-t"]);
         assert_eq!(read("-t 0 0 0 -imfchan z a.png").ignored, ["-imfchan"], "-t 0 changes nothing");
     }
@@ -240,17 +247,17 @@ mod tests {
             ("-o 0 1e3 2 wood.png", (1.0, 1.0), (0.0, 1e3)),
         ] {
             let statement = read(rest);
-            assert_eq!((statement.map.scale, statement.map.offset), (scale.into(), offset.into()), "{rest}");
+            assert_eq!(statement.map.scale_and_offset().unwrap(), (scale.into(), offset.into()), "{rest}");
             assert!(statement.ignored.is_empty() && statement.notes.is_empty(), "{rest}: {statement:?}");
         }
         let zero = read("-s 0 2 a.png");
-        assert_eq!((zero.map.scale, zero.notes.len()), (Vec2::new(0.0, 2.0), 1));
+        assert_eq!((zero.map.scale_and_offset(), zero.notes.len()), (Some((Vec2::new(0.0, 2.0), Vec2::ZERO)), 1));
         let huge = read("-s 1e7 1 -o 0 -1e9 a.png");
-        assert_eq!((huge.map.scale, huge.map.offset, huge.notes.len()), (Vec2::ONE, Vec2::ZERO, 2));
+        assert_eq!((huge.map.scale_and_offset(), huge.notes.len()), (Some((Vec2::ONE, Vec2::ZERO)), 2));
         for rest in ["-s inf 1 a.png", "-s 1 nan a.png", "-o -inf 0 nan a.png"] {
             let bad = read(rest);
-            assert_eq!((&*bad.map.names[0], bad.notes.len()), ("a.png", 1), "{rest}");
-            assert_eq!((bad.map.scale, bad.map.offset), (Vec2::ONE, Vec2::ZERO), "{rest}");
+            assert_eq!((bad.map.written(), bad.notes.len()), ("a.png", 1), "{rest}");
+            assert_eq!(bad.map.scale_and_offset().unwrap(), (Vec2::ONE, Vec2::ZERO), "{rest}");
         }
     }
 

@@ -12,9 +12,9 @@ mod words;
 
 pub(super) use named_files::named_files;
 
+use super::map_file::Channel;
 use super::material_draft::{BumpWord, Draft, ETAS, LARGEST_EXPONENT, MapDraft};
 use super::text_file::{Tally, logical_lines, read_text, shortened};
-use super::texture::Channel;
 use crate::Result;
 use blender::Blender;
 use current::{Current, MOST_IGNORED};

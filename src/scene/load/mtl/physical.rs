@@ -3,9 +3,9 @@
 use super::blender::Blender;
 use super::current::Current;
 use super::words::Words;
+use crate::scene::load::map_file::{Channel, MapFile};
 use crate::scene::load::material_draft::{Draft, MapDraft, UNSAID_KS};
 use crate::scene::load::physical_draft::{MetalColour, PhysicalDraft};
-use crate::scene::load::texture::{Channel, MapFile};
 use glam::Vec3;
 use std::f32::consts::TAU;
 

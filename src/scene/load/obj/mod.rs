@@ -7,6 +7,7 @@ mod positions;
 mod statements;
 
 use super::far::FilePlace;
+use super::model::Reading;
 use super::text_file::read_text;
 use crate::scene::{Mesh, Triangle};
 use crate::{Error, Result};
@@ -33,17 +34,6 @@ pub(super) struct Obj {
     pub smoothed: bool,
     /// What was skipped or dropped.
     pub warnings: Vec<String>,
-}
-
-/// How an OBJ file is read.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub(super) struct Reading {
-    /// Bits of an angle in degrees: vertex normals are made where the file has none; faces share them that differ by less.
-    pub smooth: Option<u32>,
-    /// `smooth` counts only where the file says nothing of smoothness: it has neither normals (`vn`) nor groups (`s`, `s off` included).
-    pub smooth_if_unsaid: bool,
-    /// The colours of its vertices are left out.
-    pub without_colours: bool,
 }
 
 /// Reads an OBJ file: all its groups in one mesh, polygons cut into triangles, zero-area triangles dropped.

@@ -1,15 +1,17 @@
-//! The objects and groups that an OBJ file names: luminaire has one object for all of them, but who changes materials may know them by these names.
+//! What a model consists of, by the names of its file: who changes materials may know its parts by these.
 
 use super::words::quoted;
 use crate::Result;
+use crate::scene::Scene;
 use crate::scene::load::text_file::{logical_lines, read_text};
 use std::path::Path;
 
 /// So many are listed.
 const MOST: usize = 40;
 
-/// Comments with the names, the number of faces of each, and the materials they use; empty where the file names none.
-pub(super) fn comments(path: &Path) -> Result<String> {
+/// Comments with the objects and groups of an OBJ file, for which luminaire has one object: the number of faces of each, and the materials they use; empty where the file
+/// names none.
+pub(super) fn of_obj(path: &Path) -> Result<String> {
     // What is odd in the file was said when it was loaded.
     let text = read_text(path, &mut Vec::new())?;
     let mut groups: Vec<Group> = Vec::new();
@@ -52,6 +54,34 @@ pub(super) fn comments(path: &Path) -> Result<String> {
         said += &format!("#   and {} more\n", groups.len() - MOST);
     }
     Ok(said)
+}
+
+/// Comments with the objects of any other model: the number of triangles of each, and the materials they use.
+pub(super) fn of_objects(scene: &Scene) -> String {
+    let own = (0..).zip(&scene.objects).filter(|(index, _)| scene.ground != Some(*index));
+    let mut said =
+        String::from("# What stands in the file, with its triangles and materials; this [[object]] is all of it:\n");
+    let mut count = 0;
+    for (_, object) in own {
+        count += 1;
+        if count > MOST {
+            continue;
+        }
+        let triangles = &scene.meshes[object.mesh as usize].triangles;
+        let mut materials: Vec<&str> = Vec::new();
+        for triangle in triangles {
+            let name = &*scene.material_of(object, triangle).name;
+            if materials.len() < MOST && !materials.contains(&name) {
+                materials.push(name);
+            }
+        }
+        let materials = materials.iter().map(|name| quoted(name)).collect::<Vec<_>>().join(", ");
+        said += &format!("#   {}: {}, {materials}\n", quoted(&object.name), triangles.len());
+    }
+    if count > MOST {
+        said += &format!("#   and {} more\n", count - MOST);
+    }
+    said
 }
 
 /// What follows an `o` or a `g`.

@@ -1,6 +1,7 @@
 //! A bare model as a scene file, to be changed: what was chosen for it, and every key with what it means.
 
 mod groups;
+mod luminaires;
 mod maps;
 mod materials;
 mod physical;
@@ -9,12 +10,14 @@ mod words;
 
 use super::bare_mesh::{self, BareMesh, Z_UP};
 use super::choices::{Choices, Sky, Up};
+use super::format::Format;
+use super::obj::file_name;
 use super::{finish, ground, with_what_is_there};
-use crate::scene::{Luminaire, Projection, Scene};
+use crate::scene::{Camera, Projection, Scene, Sensor};
 use crate::{Error, Result};
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use std::path::Path;
-use words::{exact, number, path as named, point, quoted, triple};
+use words::{exact, keys, number, path as named, point, quoted, triple};
 
 /// A bare model's scene file.
 #[derive(Debug)]
@@ -25,55 +28,53 @@ pub struct SceneFile {
     pub scene: Scene,
 }
 
-/// The scene file that says what [`load_with`](super::load_with) makes of a bare OBJ with these choices: loaded from `folder`, where its
+/// The scene file that says what [`load_with`](super::load_with) makes of a bare model with these choices: loaded from `folder`, where its
 /// names of files begin, it is the same scene to the last bit.
 ///
 /// # Errors
-/// [`Error::Usage`] for anything but an OBJ; otherwise as for [`load`](super::load).
+/// [`Error::Usage`] for anything but a model; otherwise as for [`load`](super::load).
 pub fn scene_file(path: &Path, choices: &Choices, folder: &Path) -> Result<SceneFile> {
-    if !path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("obj")) {
-        let what = match path.extension() {
-            Some(ending) if ending.eq_ignore_ascii_case("toml") => {
-                ": it is a scene file already, and there is nothing to write down"
-            }
-            _ => "",
+    let Some(format) = Format::of(path).filter(|format| *format != Format::SceneFile) else {
+        let what = match Format::of(path) {
+            Some(_) => ": it is a scene file already, and there is nothing to write down",
+            None => "",
         };
         return Err(Error::Usage(format!(
             "{}: a scene file is made for a bare model, a mesh ending in .obj{what}",
             path.display()
         )));
-    }
-    let mut bare = bare_mesh::load(path, choices).map_err(with_what_is_there(path))?;
+    };
+    let mut bare = bare_mesh::load(path, format, choices).map_err(with_what_is_there(path))?;
     finish(&mut bare.scene)?;
-    let mut text = head(&bare);
-    text += &film(&bare.scene);
-    text += &sensor(&bare.scene);
-    text += &environment(&bare, folder)?;
-    text += &ground_table(&bare);
-    text += INTEGRATOR;
-    text += &render(&bare.scene);
-    text += &object(&bare, path, folder)?;
-    text += &groups::comments(path)?;
-    text += "\n";
-    text += &materials::tables(&bare.scene, &bare.loader.drafts, folder)?;
-    text += &luminaires(&bare);
-    Ok(SceneFile { text, scene: bare.scene })
+    let parts = match format {
+        Format::Obj => groups::of_obj(path)?,
+        _ => groups::of_objects(&bare.scene),
+    };
+    Ok(SceneFile { text: text(&bare, &parts, folder)?, scene: bare.scene })
 }
 
-/// Lines of keys with their meaning, the latter in one column.
-fn keys(lines: &[(&str, String, &str)]) -> String {
-    let lines = lines.iter().map(|(key, value, meaning)| {
-        let said = format!("{key} = {value}");
-        format!("{said:39}  # {meaning}").trim_end().trim_end_matches("  #").trim_end().to_owned() + "\n"
-    });
-    lines.collect()
+/// The scene file of a model; `parts` are comments of what it consists of.
+pub(super) fn text(bare: &BareMesh, parts: &str, folder: &Path) -> Result<String> {
+    let mut text = head(bare);
+    text += &film(&bare.scene);
+    text += &sensors(&bare.scene);
+    text += &environment(bare, folder)?;
+    text += &ground_table(bare);
+    text += INTEGRATOR;
+    text += &render(&bare.scene);
+    text += &object(bare, folder)?;
+    text += parts;
+    text += "\n";
+    text += &materials::tables(&bare.scene, &bare.loader.drafts, folder)?;
+    text += &luminaires::tables(bare);
+    Ok(text)
 }
 
 fn head(bare: &BareMesh) -> String {
     let name = quoted(&bare.scene.path.to_string_lossy());
     format!(
         "# What `luminaire render` shows of {name}, written down by `luminaire scene`, to be changed.\n\
-         # A key behind a `#` stands for what holds without it. Lengths are in the unit of the OBJ file, angles in degrees, colours linear RGB,\n\
+         # A key behind a `#` stands for what holds without it. Lengths are in the unit of the model's file, angles in degrees, colours linear RGB,\n\
          # and names of files relative to this one. y points up.\n"
     )
 }
@@ -93,8 +94,15 @@ fn film(scene: &Scene) -> String {
         ])
 }
 
-fn sensor(scene: &Scene) -> String {
-    let sensor = &scene.sensor;
+/// The cameras: the model's own, or the one that was found for it.
+fn sensors(scene: &Scene) -> String {
+    match &scene.cameras[..] {
+        [] => sensor(scene, &scene.sensor, None),
+        own => own.iter().map(|Camera { name, sensor: own }| sensor(scene, own, Some(name))).collect(),
+    }
+}
+
+fn sensor(scene: &Scene, sensor: &Sensor, name: Option<&str>) -> String {
     let (kind, extent) = match sensor.projection {
         Projection::Perspective { fov } => (
             (
@@ -115,7 +123,16 @@ fn sensor(scene: &Scene) -> String {
     };
     let up = if sensor.up == Vec3::Y { "# up" } else { "up" };
     let distance = sensor.position.distance(sensor.target);
-    "\n[sensor]\n".to_owned()
+    let several = name.is_some();
+    let name = match name {
+        None => ("# name", "\"front\"".into()),
+        Some(name) => ("name", quoted(name)),
+    };
+    let shift = match sensor.shift {
+        Vec2::ZERO => ("# shift", "[0, 0]".to_owned()),
+        Vec2 { x, y } => ("shift", format!("[{}, {}]", number(x), number(y))),
+    };
+    if several { "\n[[sensor]]\n" } else { "\n[sensor]\n" }.to_owned()
         + &keys(&[
             kind,
             ("position", point(sensor.position, scene.origin), "the eye point"),
@@ -130,12 +147,8 @@ fn sensor(scene: &Scene) -> String {
             ("# focus_distance", number(distance), "distance of the plane that is in focus, above 0"),
             ("# blades", "0".into(), "corners of the aperture, 3 to 64; 0 is a disk"),
             ("# blade_rotation", "0".into(), "by which the aperture is turned"),
-            ("# shift", "[0, 0]".into(), "a shift lens: by so many widths to the right and heights up of the picture"),
-            (
-                "# name",
-                "\"front\"".into(),
-                "several cameras are several [[sensor]], each with a name, which --camera takes",
-            ),
+            (shift.0, shift.1, "a shift lens: by so many widths to the right and heights up of the picture"),
+            (name.0, name.1, "several cameras are several [[sensor]], each with a name, which --camera takes"),
         ])
 }
 
@@ -226,8 +239,11 @@ fn render(scene: &Scene) -> String {
         ])
 }
 
-fn object(bare: &BareMesh, path: &Path, folder: &Path) -> Result<String> {
-    let object = &bare.scene.objects[0];
+fn object(bare: &BareMesh, folder: &Path) -> Result<String> {
+    let path = &bare.scene.path;
+    let own = bare.scene.objects.len() - usize::from(bare.scene.ground.is_some());
+    // All of a model's objects have one table.
+    let name = if own == 1 { bare.scene.objects[0].name.clone() } else { file_name(path) };
     let smooth = match bare.smooth {
         Some(degrees) => ("smooth", number(degrees)),
         None => ("# smooth", "40".to_owned()),
@@ -241,14 +257,14 @@ fn object(bare: &BareMesh, path: &Path, folder: &Path) -> Result<String> {
     let mut text = "\n# An instance of a mesh; there may be more of them, of this mesh and of others.\n[[object]]\n"
         .to_owned()
         + &keys(&[
-            ("mesh", quoted(&named(path, folder)?), "an OBJ file"),
-            ("name", quoted(&object.name), "for messages"),
+            ("mesh", quoted(&named(path, folder)?), "the file of a model"),
+            ("name", quoted(&name), "for messages"),
             (
                 smooth.0,
                 smooth.1,
                 "degrees, 0 to 180: without normals (vn), faces that meet at less share them; 0 is flat",
             ),
-            ("# vertex_colours", "true".into(), "false: the colours that the OBJ gives its vertices are left out"),
+            ("# vertex_colours", "true".into(), "false: the colours that the file gives its vertices are left out"),
             ("# material", "\"NAME\"".into(), "the material that replaces all others on this instance"),
         ]);
     let placed = [
@@ -266,46 +282,3 @@ fn object(bare: &BareMesh, path: &Path, folder: &Path) -> Result<String> {
 }
 
 const IDENTITY: &str = "[[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]]";
-
-/// The lamp at the camera, if there is one, and what others there may be.
-fn luminaires(bare: &BareMesh) -> String {
-    let mut text = String::new();
-    for luminaire in &bare.scene.luminaires {
-        if let Luminaire::Point { position, intensity } = luminaire {
-            text += "\n# The lamp at the camera.\n[[luminaire]]\n";
-            text += &keys(&[
-                ("kind", "\"point\"".into(), ""),
-                ("position", point(*position, bare.scene.origin), ""),
-                ("intensity", triple(*intensity), "radiant intensity, RGB"),
-            ]);
-        }
-    }
-    text + LUMINAIRES
-}
-
-const LUMINAIRES: &str = "
-# Luminaires without an area, as many as you like; one with an area is a mesh whose material emits.
-# [[luminaire]]
-# kind = \"point\"                         # intensity: radiant intensity, RGB
-# position = [0, 1, 0]
-# intensity = [1, 1, 1]
-# [[luminaire]]
-# kind = \"point\"                         # one that shines as a photometric file says
-# position = [0, 3, 0]
-# profile = \"lamp.ies\"                   # an IES file (LM-63), in candela
-# direction = [0, -1, 0]                 # where its vertical angle of 0 looks; without it down
-# up = [1, 0, 0]                         # the side to which its horizontal angle of 0 looks; without it up, or +x where `direction` is vertical
-# intensity = [1, 1, 1]                  # a factor to it
-# [[luminaire]]
-# kind = \"spot\"                          # a point that shines into a cone: no light beyond outer_angle from direction, all of it within inner_angle
-# position = [0, 3, 0]
-# direction = [0, -1, 0]
-# intensity = [1, 1, 1]
-# inner_angle = 20                       # degrees from the axis, 0 to outer_angle; without it 0
-# outer_angle = 30                       # degrees from the axis, 0.0001 to 90
-# [[luminaire]]
-# kind = \"infinite\"                      # direction in which the light travels; irradiance on a surface that faces it
-# direction = [0.3, -0.8, -0.7]
-# irradiance = [1, 1, 1]
-# angle = 0                              # diameter of a disc that is seen and has soft shadows: 0.53 is the sun's, at most 180
-";

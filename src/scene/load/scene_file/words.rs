@@ -1,4 +1,4 @@
-//! Numbers, names and paths as a scene file has them: read again, they are the same to the last bit.
+//! Numbers, names, paths and lines as a scene file has them: read again, they are the same to the last bit.
 
 use crate::{Error, Result};
 use glam::{DVec3, Vec3};
@@ -41,6 +41,15 @@ pub(super) fn quoted(name: &str) -> String {
         }
     }
     text + "\""
+}
+
+/// Lines of keys with their meaning, the latter in one column.
+pub(super) fn keys(lines: &[(&str, String, &str)]) -> String {
+    let lines = lines.iter().map(|(key, value, meaning)| {
+        let said = format!("{key} = {value}");
+        format!("{said:39}  # {meaning}").trim_end().trim_end_matches("  #").trim_end().to_owned() + "\n"
+    });
+    lines.collect()
 }
 
 /// The path of a file as a scene file in `folder` names it.

@@ -5,16 +5,16 @@ use super::file::File;
 use super::radians;
 use super::tables::{ConductorEntry, MapChannel, MapEntry, MaterialTable, Model, PlacedMap};
 use super::values::Transmission;
+use crate::scene::load::map_file::{Channel, MapFile, scaled_and_moved};
 use crate::scene::load::material_draft::{Draft, DraftMaps, MapDraft};
 use crate::scene::load::metals;
 use crate::scene::load::near_name::instead_of;
 use crate::scene::load::physical_draft::{PhysicalDraft, PhysicalDraftMaps};
 use crate::scene::load::text_file::{line_and_column, shortened};
-use crate::scene::load::texture::{Channel, MapFile};
 use crate::{Error, Result};
 use ::toml::Spanned;
 use ::toml::de::{DeTable, DeValue};
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use std::collections::HashSet;
 use std::ops::Range;
 
@@ -208,8 +208,8 @@ impl File<'_> {
             .map_err(|error| self.error(entry.span(), Error::read(&path, error).to_string() + &instead_of(&path)))?;
         let at = format!("{}:{}", self.path.display(), line_and_column(self.text, entry.span().start).0);
         let plain = MapFile::plain(vec![name.clone()], self.folder(), at);
-        let scale = scale.map_or(plain.scale, |scale| scale.0);
-        let offset = offset.map_or(plain.offset, |offset| offset.0);
+        let scale = scale.map_or(Vec2::ONE, |scale| scale.0);
+        let offset = offset.map_or(Vec2::ZERO, |offset| offset.0);
         let channel = channel.map_or(plain.channel, |channel| match channel {
             MapChannel::R => Channel::One(0),
             MapChannel::G => Channel::One(1),
@@ -217,7 +217,7 @@ impl File<'_> {
             MapChannel::A => Channel::One(3),
             MapChannel::Luminance => Channel::Luminance,
         });
-        Ok(MapDraft::File(MapFile { scale, offset, channel, ..plain }))
+        Ok(MapDraft::File(MapFile { transform: scaled_and_moved(scale, offset), channel, ..plain }))
     }
 }
 

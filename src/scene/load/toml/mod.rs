@@ -99,9 +99,10 @@ impl File<'_> {
         };
         let (mut objects, mut to_world) = (Vec::new(), Vec::new());
         for table in &file.object {
-            let (object, place) = self.object(table, &mut loader)?;
-            objects.push(object);
-            to_world.push(place);
+            for (object, place) in self.objects(table, &mut loader)? {
+                objects.push(object);
+                to_world.push(place);
+            }
         }
         if objects.is_empty() {
             return Err(Error::scene(self.path, "nothing to trace: the scene file has no [[object]]"));

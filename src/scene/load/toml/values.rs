@@ -1,7 +1,7 @@
 //! Numbers of a scene file that are checked as they are read, so that an error points at the very value.
 
+use crate::scene::load::map_file::LARGEST_TRANSFORM;
 use crate::scene::load::material_draft::{ETAS, LARGEST_EXPONENT};
-use crate::scene::load::texture::LARGEST_TRANSFORM;
 use crate::scene::{Estimator, LEAST_ANGLE};
 use glam::{DVec2, DVec3, Vec2, Vec3};
 use serde::de::value::SeqAccessDeserializer;
