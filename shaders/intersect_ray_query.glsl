@@ -21,6 +21,15 @@ const uint RAY_FLAGS = HOLES ? gl_RayFlagsNoneEXT : gl_RayFlagsOpaqueEXT;
         } \
     }
 
+// Ends the function: whether something is committed, with the hit. (A query cannot be given to a function.)
+#define RETURN_COMMITTED(query, hit) \
+    if (rayQueryGetIntersectionTypeEXT(query, true) != gl_RayQueryCommittedIntersectionTriangleEXT) return false; \
+    hit.t = rayQueryGetIntersectionTEXT(query, true); \
+    hit.object = OBJECT_OF(query, true); \
+    hit.triangle = TRIANGLE_OF(query, true); \
+    hit.barycentric = rayQueryGetIntersectionBarycentricsEXT(query, true); \
+    return true;
+
 // A query with numbers that are not numbers is undefined.
 bool is_ray(vec3 origin, vec3 direction) {
     float size = dot(abs(direction), vec3(1.0));
@@ -32,12 +41,7 @@ bool closest_hit(vec3 origin, vec3 direction, float t_max, uint salt, out Hit hi
     rayQueryEXT query;
     rayQueryInitializeEXT(query, top_level, RAY_FLAGS, 0xffu, origin, 0.0, direction, t_max);
     PROCEED(query, salt)
-    if (rayQueryGetIntersectionTypeEXT(query, true) != gl_RayQueryCommittedIntersectionTriangleEXT) return false;
-    hit.t = rayQueryGetIntersectionTEXT(query, true);
-    hit.object = OBJECT_OF(query, true);
-    hit.triangle = TRIANGLE_OF(query, true);
-    hit.barycentric = rayQueryGetIntersectionBarycentricsEXT(query, true);
-    return true;
+    RETURN_COMMITTED(query, hit)
 }
 
 bool next_passed(vec3 origin, vec3 direction, float t_min, float t_max, uint salt, out Hit hit) {
@@ -51,12 +55,7 @@ bool next_passed(vec3 origin, vec3 direction, float t_min, float t_max, uint sal
             rayQueryConfirmIntersectionEXT(query);
         }
     }
-    if (rayQueryGetIntersectionTypeEXT(query, true) != gl_RayQueryCommittedIntersectionTriangleEXT) return false;
-    hit.t = rayQueryGetIntersectionTEXT(query, true);
-    hit.object = OBJECT_OF(query, true);
-    hit.triangle = TRIANGLE_OF(query, true);
-    hit.barycentric = rayQueryGetIntersectionBarycentricsEXT(query, true);
-    return true;
+    RETURN_COMMITTED(query, hit)
 }
 
 bool occluded(vec3 origin, vec3 direction, float t_max, uint salt) {

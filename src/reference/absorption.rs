@@ -5,7 +5,6 @@
 
 use super::hit::Hit;
 use super::prepared_scene::Reference;
-use crate::scene::outward;
 use glam::DVec3;
 
 /// What is not absorbed over a length inside.
@@ -63,8 +62,6 @@ impl Reference {
 
     /// Whether a ray comes to the outward side of what it hits.
     fn is_front(&self, hit: &Hit, direction: DVec3) -> bool {
-        let mesh = &self.scene.meshes[self.scene.objects[hit.object as usize].mesh as usize];
-        let normal_to_world = self.instances[hit.object as usize].normal_to_world;
-        (normal_to_world * outward(mesh, &mesh.triangles[hit.triangle as usize])).dot(direction) <= 0.0
+        self.outward(hit).dot(direction) <= 0.0
     }
 }

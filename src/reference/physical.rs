@@ -359,6 +359,8 @@ impl Lobes {
             Dielectric { eta, index, inside, f0, f90, normal: normal_reflectance, alpha: dielectric_alpha, multiple };
         let brushed = !smooth && ggx.x != ggx.y && p.metallic < 1.0;
         let share = match brushed {
+            // Nothing goes by the tables.
+            _ if straight => DielectricAlbedo::default(),
             true => BRUSHED.dielectric([ggx.x, ggx.y], wo, index),
             false => TABLE.dielectric(cosine, alpha, index),
         };
@@ -509,7 +511,7 @@ impl Lobes {
         // Of what scatters widely the coat takes its share both ways, of a reflection the greater one.
         let entered = self.coat.passed(wi);
         let mut value = self.diffuse;
-        if !self.dielectric.inside {
+        if !self.dielectric.inside && value != DVec3::ZERO {
             let share = TABLE.dielectric(cosine, self.dielectric.alpha, self.dielectric.index);
             value *= entered * (DVec3::ONE - self.dielectric.albedo(cosine, &share, missing));
         }

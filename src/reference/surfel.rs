@@ -72,8 +72,7 @@ impl Reference {
         let mesh = &self.scene.meshes[object.mesh as usize];
         let triangle = &mesh.triangles[hit.triangle as usize];
         let normal_to_world = self.instances[hit.object as usize].normal_to_world;
-        // What is outside in object space stays outside in an instance that mirrors.
-        let front = (normal_to_world * outward(mesh, triangle)).dot(geometric_normal) >= 0.0;
+        let front = self.outward(hit).dot(geometric_normal) >= 0.0;
         let mut shading_normal = geometric_normal;
         if !mesh.normals.is_empty() {
             let normals = triangle.vertices.map(|v| mesh.normals[v as usize]);
@@ -144,6 +143,15 @@ impl Reference {
             impulse_probability: material.impulse_probability.map(f64::from),
             lobes: physical.map(|surface| Lobes::new(&surface, shading_normal, front, wo)),
         }
+    }
+}
+
+impl Reference {
+    /// Across the outward side of what was hit, of any length. What is outside in object space stays outside in an instance that mirrors.
+    pub(super) fn outward(&self, hit: &Hit) -> DVec3 {
+        let mesh = &self.scene.meshes[self.scene.objects[hit.object as usize].mesh as usize];
+        let normal_to_world = self.instances[hit.object as usize].normal_to_world;
+        normal_to_world * outward(mesh, &mesh.triangles[hit.triangle as usize])
     }
 }
 

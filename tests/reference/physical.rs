@@ -302,7 +302,7 @@ fn reciprocity_fails_by_no_more_than_is_said() {
                 true => BRUSHED.missing([ggx.x, ggx.y], w),
                 false => TABLE.missing(w.z, ggx.x),
             };
-            let bound = { 1.0 / (1.0 - missing(wo).max(missing(wi))) };
+            let bound = 1.0 / (1.0 - missing(wo).max(missing(wi)));
             let ratio = (there / back).max(back / there).max_element();
             assert!(ratio <= bound * (1.0 + 1e-9), "{name}: {there} {back}, {ratio} above {bound}");
             // A white metal's, if it is narrow, is the ratio of what is missing.
